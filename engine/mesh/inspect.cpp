@@ -12,7 +12,7 @@
 namespace skerry {
 namespace {
 
-// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
+// Tetrahedra of lower quality count as slivers. Their small altitudes shorten the stable time step and reduce accuracy.
 constexpr Real poor_quality = 0.1;
 
 using Edge = std::pair<Index, Index>;  // nodes of an edge, the lower number first
@@ -48,8 +48,8 @@ void measure_edges(const Mesh& mesh, MeshReport& report) {
     report.mean_edge = sum / static_cast<Real>(edges.size());
 }
 
-/// Quality of a tetrahedron: 12 (3 V)^(2/3) / sum of squared edge lengths, with the sign of the volume V. It is 1 for a
-/// regular tetrahedron and 0 for a flat one.
+/// Mean-ratio quality of a tetrahedron: 12 (3 |V|)^(2/3) / (sum of squared edge lengths), with the sign of the volume
+/// V. It is 1 for a regular tetrahedron and 0 for a flat one.
 Real quality(Real six_volumes, const std::array<Real, 6>& edges) {
     Real squares = 0;
     for (const Real length : edges) squares += length * length;
@@ -99,7 +99,8 @@ MeshReport inspect(const Mesh& mesh) {
     report.components = mesh::count_parts(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);
-    // The enclosed volume is a sum over the tetrahedra that one node forms with the triangles (divergence theorem).
+    // The volume enclosed by a surface is the sum of the signed volumes of tetrahedra that join each triangle with node
+    // 0 (divergence theorem).
     for (const auto& [a, b, c] : mesh.triangles) report.volume += mesh::six_volumes(mesh, {0, a, b, c}) / 6;
     return report;
 }

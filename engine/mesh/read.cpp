@@ -62,7 +62,7 @@ bool is_surface_format(const std::string& path) {
 
 namespace {
 
-/// Notes the elements with a volume that are not tetrahedra and therefore no part of the mesh.
+/// Adds a note about solid elements that are not tetrahedra, such as hexahedra. They are left out of the mesh.
 void note_left_out(RawMesh& mesh) {
     static constexpr std::array<std::string_view, 6> flat{"points",         "lines",           "quadrilaterals",
                                                           "flat triangles", "triangle strips", "polygons"};
@@ -86,7 +86,7 @@ RawMesh read_raw(const std::string& path, bool surface, std::vector<std::string>
     return raw;
 }
 
-/// True if two tetrahedra lie on the same side of a face that they share, so that they overlap.
+/// True if two tetrahedra share a face and lie on the same side of it, so that they overlap.
 bool any_overlap(const Mesh& mesh) {
     std::array<int, 2> on_side{};
     const TetrahedronFace* before = nullptr;
@@ -102,7 +102,7 @@ bool any_overlap(const Mesh& mesh) {
 /// Reverses the orientation of the inverted tetrahedra of a mesh whose node numbers are valid, unless they would then
 /// overlap other tetrahedra. Some programs list the nodes of all or some tetrahedra in the opposite order. In another
 /// kind of faulty file, a node lies in a wrong place: tetrahedra at this node are inverted, too, but share each face
-/// with a tetrahedron on its other side. These are left as they are.
+/// with a tetrahedron on its other side. The latter tetrahedra are left as they are.
 void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
@@ -122,8 +122,8 @@ void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* n
                          " tetrahedra list their nodes in the opposite order (negative volume) and were turned");
 }
 
-/// Adds the sets of a file to the mesh. used[n]: number that node n of the mesh has in the file. Sets without any part
-/// in the mesh are dropped, with a note.
+/// Adds the sets of a file to the mesh. used[n]: index in the file of node n of the mesh. Sets without any part in the
+/// mesh are dropped, with a note.
 void take_sets(const std::string& path, std::map<std::string, MeshSet>& raw, std::span<const Index> used,
                std::size_t raw_nodes, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<Index> place(raw_nodes, no_index);
@@ -208,7 +208,7 @@ SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* note
 
 namespace {
 
-/// Gives the materials that an .obj file names the properties from its .mtl files.
+/// Reads the .mtl files of an .obj file, and fills in the properties of the materials that the .obj file uses.
 void read_materials(const std::string& path, const std::vector<std::string>& files,
                     std::vector<VisualMaterial>& materials, std::vector<std::string>* notes) {
     std::set<std::string> missing;
@@ -225,7 +225,7 @@ void read_materials(const std::string& path, const std::vector<std::string>& fil
             if (used == materials.end()) continue;
             missing.erase(found.name);
             *used = std::move(found);
-            // A saved world must find the image from any working folder.
+            // The path becomes absolute, because a saved world must find the image from any working folder.
             if (!used->texture.empty())
                 used->texture = std::filesystem::absolute(used->texture).lexically_normal().string();
         }

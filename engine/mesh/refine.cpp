@@ -15,7 +15,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Positions in second_order_edges of the edges of each face of a tetrahedron, and the corners of the face.
+/// A face of a tetrahedron: its corners, and its edges as indices into second_order_edges.
 struct FaceOfTetrahedron {
     std::array<std::size_t, 3> corner, edge;
 };
@@ -27,7 +27,8 @@ std::array<Index, 3> picked(const std::array<Index, N>& from, const std::array<s
     return {from[position[0]], from[position[1]], from[position[2]]};
 }
 
-/// Marks the midpoints that a set of nodes gets.
+/// Collects the edge midpoints that are added to a set of nodes in a refinement, so that the set covers the same faces
+/// and edges.
 class MidpointMarks {
 public:
     MidpointMarks(std::size_t node_count, const std::vector<Index>& nodes) : in_set_(node_count), on_face_(node_count) {
@@ -39,8 +40,8 @@ public:
         for (const Index n : corners) on_face_[static_cast<std::size_t>(n)] = true;
         found_.insert(found_.end(), midpoints.begin(), midpoints.end());
     }
-    /// Marks the midpoint of an edge whose ends are in the set, unless both ends are nodes of its faces. All faces must
-    /// have been added.
+    /// Adds the midpoint of an edge if both ends are in the set, but not both on faces of the set: such a midpoint is
+    /// added with its face, or the edge only connects two faces of the set. Call add_face for all faces before.
     void add_edge(std::size_t a, std::size_t b, Index midpoint) {
         if (in_set_[a] && in_set_[b] && !(on_face_[a] && on_face_[b])) found_.push_back(midpoint);
     }
@@ -52,7 +53,7 @@ public:
     }
 
 private:
-    std::vector<bool> in_set_, on_face_;  // on_face_: true for the nodes of faces whose nodes are all in the set
+    std::vector<bool> in_set_, on_face_;  // on_face_: true for a node of a face that has all of its nodes in the set
     std::vector<Index> found_;
 };
 

@@ -16,7 +16,7 @@ void sort_unique(std::vector<Index>& numbers) {
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// True if `in` contains all of the nodes. `in` is ascending.
+/// True if `in` contains all of the nodes. `in` must be ascending, for binary search.
 template <std::size_t N>
 bool has_all(const std::vector<Index>& in, const std::array<Index, N>& nodes) {
     return std::ranges::all_of(nodes, [&](Index n) { return std::ranges::binary_search(in, n); });
@@ -61,7 +61,7 @@ void require_set(const std::string& object, const std::string& name, const MeshS
 std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::map<std::string, MeshSet>& sets) {
     if (std::ranges::all_of(sets, [](const auto& item) { return item.second.faces.empty(); })) return 0;
     const std::vector<TetrahedronFace> all = sorted_faces(tetrahedra);
-    std::vector<std::pair<std::array<Index, 3>, std::array<Index, 3>>> outer;  // sorted nodes, oriented nodes
+    std::vector<std::pair<std::array<Index, 3>, std::array<Index, 3>>> outer;  // sorted nodes, nodes oriented outward
     for (const BoundaryTriangle& t : boundary_triangles(tetrahedra)) outer.emplace_back(sorted_face(t.node), t.node);
     std::ranges::sort(outer);
     std::size_t dropped = 0;

@@ -18,8 +18,8 @@ inline std::array<Index, 3> sorted_face(std::array<Index, 3> face) {
     return face;
 }
 
-/// Sorts the nodes and tetrahedra of a set and drops repeated numbers. Also drops faces that have the nodes of an
-/// earlier face.
+/// Sorts the nodes and tetrahedra of a set and drops duplicates. Also drops faces with the same three nodes as an
+/// earlier face of the set; the order of the other faces is kept.
 void tidy(MeshSet& set);
 
 /// Throws SceneError that names `object` and the set if a number is out of range, or if a listed face is not a face of
@@ -27,11 +27,12 @@ void tidy(MeshSet& set);
 void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
                  std::span<const std::array<Index, 4>> tetrahedra, std::span<const std::array<Index, 3>> surface = {});
 
-/// Reverses listed faces that are boundary triangles with the opposite orientation, and drops triangles that are not
-/// faces of the tetrahedra. Returns the number of dropped triangles.
+/// Gives the faces of sets that are boundary triangles the orientation of the boundary (outward), and drops triangles
+/// that are not faces of the tetrahedra. Returns the number of dropped triangles.
 std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::map<std::string, MeshSet>& sets);
 
-/// Returns the expected value in an error message: one of the sets "a", "b", or that there are no sets.
+/// Returns the text on the expected set for an error message: that one of the sets "a", "b" is expected, or that there
+/// are no sets.
 std::string expected_set(const std::vector<std::string>& names);
 std::vector<std::string> names_of(const std::map<std::string, MeshSet>& sets);
 

@@ -1,4 +1,4 @@
-// Parts of a mesh before and after its uniform subdivision.
+// Uniform subdivision of a mesh, with a record of the old elements and the new nodes.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace skerry::mesh {
 struct Subdivision {
     std::size_t node_count = 0;  // number of nodes before the subdivision
     std::vector<std::array<Index, 4>> tetrahedra{};
-    std::vector<std::array<Index, 6>> middle{};  // midpoints of each tetrahedron, see RawMesh::middle
+    std::vector<std::array<Index, 6>> middle{};  // edge midpoints of each tetrahedron, see second_order_edges
     std::vector<std::array<Index, 3>> triangles{};
     std::vector<std::array<Index, 3>> triangle_middle{};
 };
@@ -21,7 +21,7 @@ struct Subdivision {
 /// Divides a mesh as `refine` does, and returns a record of the division.
 Subdivision subdivide(Mesh& mesh);
 
-/// Adds the midpoints of edges that a set of nodes gets by the rule of `refine`, in ascending order.
+/// Appends to a set of nodes the midpoints that belong to the set by the rule of `refine`, in ascending order.
 void add_midpoints(const Subdivision& subdivision, std::vector<Index>& nodes);
 
 }  // namespace skerry::mesh

@@ -14,7 +14,7 @@ Real six_volumes(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 /// Lengths of the six edges of a tetrahedron [m].
 std::array<Real, 6> edge_lengths(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
-/// Returns (2 A)^2, where A is the area of the largest face [m^4]. The smallest altitude is six_volumes / (2 A).
+/// Returns (2 A)^2, where A is the area of the largest face [m^4]. The smallest altitude is |six_volumes| / (2 A).
 Real largest_face_squared(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
 enum class Orientation { positive, flat, inverted };

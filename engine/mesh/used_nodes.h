@@ -9,13 +9,14 @@
 
 namespace skerry::mesh {
 
-/// Nodes that are used, and their numbers among all nodes.
+/// Positions of the nodes that are used, and their indices in the list of all nodes.
 struct UsedNodes {
     std::vector<Vec3> nodes;
     std::vector<Index> number;
 };
 
-/// Removes nodes that no row uses. The remaining nodes stay in order, and the node numbers in the rows are updated.
+/// Removes nodes that no element uses. `rows`: node indices of each element; they are updated. The remaining nodes stay
+/// in order.
 template <std::size_t N>
 UsedNodes drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
     std::vector<Index> place(nodes.size(), no_index);

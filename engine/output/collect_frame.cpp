@@ -13,7 +13,8 @@ namespace skerry {
 
 namespace {
 
-/// Returns the material of each cell of a body.
+/// Returns the index of the material of each cell of a body: of each tetrahedron or, without tetrahedra, of each
+/// triangle.
 std::vector<Index> materials_of(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.row(body, "frame"));
@@ -28,8 +29,8 @@ const BoundVisual* visual_of(const World& world, BodyHandle body) {
     return model.body_records[static_cast<std::size_t>(model.row(body, "frame"))].visual.get();
 }
 
-/// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
-/// cells have the value zero.
+/// Returns a value for each cell of a body, given the values of its tetrahedra. A body without tetrahedra is rigid; its
+/// cells are triangles and get the value `zero`.
 template <class T>
 std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& body, const T& zero) {
     of_tetrahedra.resize(body.count_cells(), zero);

@@ -1,4 +1,4 @@
-// Distance of objects that never touched during a run.
+// Shortest distance between the objects of a scene, for a run in which no objects touched.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace skerry {
 
-/// Returns the shortest distance between a node of a body and the surface of another object that may touch it, as text
-/// with the names of both. Returns an empty text if there is no such pair, or if the scene is so large that the search
-/// would take long.
+/// Returns the shortest distance between a node of a body and the surface of another object that may collide with the
+/// body, as text with the names of both. Returns an empty text if there is no such pair, or if the scene is so large
+/// that the search would take long.
 std::string nearest_text(const World& world);
 
 }  // namespace skerry

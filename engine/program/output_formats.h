@@ -1,5 +1,5 @@
-// List of the outputs that `skerry run` offers. To add a format, write a Writer and add a row to the list in the
-// source.
+// List of the outputs that `skerry run` offers. To add a format, write a Writer and add a row to the list in
+// output_formats.cpp.
 #pragma once
 
 #include <filesystem>
@@ -17,8 +17,7 @@ struct OutputRequest {
     std::filesystem::path place;
     const Scene& scene;
     const RunOptions& options;
-    // Result of the run. It is complete when a writer is closed, except for the results of writers that are closed
-    // later.
+    // Result of the run. When a writer is closed, it lacks only the entries of writers that are closed later.
     const RunResult& result;
 };
 

@@ -12,21 +12,20 @@ namespace skerry {
 
 namespace {
 
-// Limits beyond which a value is probably a mistake. most_sag: sag of a body under its weight, estimated by linear
-// elasticity and divided by the height of the body; the softest gels reach about 1. Densities and modulus: aerogels are
-// the lightest materials, osmium is the heaviest, and diamond the stiffest. Gravity: the largest centrifuges reach some
-// 10,000 m/s^2.
+// Limits beyond which a value is probably a mistake.
+
+// sag of a body under its weight, divided by its height: density * gravity * height / E; the softest gels reach about 1
 constexpr Real most_sag = 2;
-constexpr Real least_density = 2, most_density = 25000;  // [kg/m^3]
-constexpr Real most_modulus = 1.3e12;                    // [Pa]
-constexpr Real most_gravity = 5000;                      // [m/s^2]
-constexpr Real most_size_ratio = 999;                    // size of the longest body over that of the shortest
-// Distance of a body from the origin, as a multiple of its size, beyond which a pin is hardly meant to rotate about the
-// origin.
+constexpr Real least_density = 2, most_density = 25000;  // aerogels and osmium are just within [kg/m^3]
+constexpr Real most_modulus = 1.3e12;                    // diamond is just below [Pa]
+constexpr Real most_gravity = 5000;                      // 9.81 m/s^2 given in mm/s^2 is above [m/s^2]
+constexpr Real most_size_ratio = 999;                    // longest body over shortest; 1000 if one is in mm
+// If the center of a body is further from the origin than this multiple of the size of the body, a pin that rotates
+// about the origin is probably a mistake.
 constexpr Real most_pivot_distance = 1;
-// size of a rigid body from a surface file above which mm were probably read as m [m]
+// longest plausible rigid body from a surface file; the file of a longer one is probably in mm [m]
 constexpr Real most_surface_size = 20;
-constexpr Real least_given_density = 1;   // mean density of a body with a given mass; hollow bodies are light [kg/m^3]
+constexpr Real least_given_density = 1;   // mean density if a mass is given; the body may be hollow [kg/m^3]
 constexpr Real least_yield_ratio = 1e-6;  // yield stress over Young's modulus
 
 struct Extent {
@@ -57,7 +56,7 @@ std::string rough(Real value) {
     return count_text(std::round(value / unit) * unit);
 }
 
-/// Returns the materials of a body: its own, and the materials by label.
+/// Returns the materials of a body: the default material, then those of the labels of its tetrahedra.
 std::vector<std::size_t> materials_of(const BodyPlan& body) {
     std::vector<std::size_t> materials{body.material};
     for (const auto& [label, material] : body.materials) materials.push_back(material);
@@ -150,7 +149,7 @@ void warn_of_material(const std::string& name, const MaterialSettings& material,
                            short_text(material.young_modulus) + " Pa: are both in Pa?");
 }
 
-/// Warns if a collider has another pose than its keys. The run uses the keys.
+/// Warns if the position given for a collider differs from the position of its first motion key. The run uses the keys.
 void warn_of_pose(const ColliderSettings& collider, std::vector<std::string>& warnings) {
     if (collider.motion.keys.empty() || collider.position.isZero(0)) return;
     const Vec3& first = collider.motion.keys.front().position;

@@ -8,12 +8,12 @@
 
 namespace skerry {
 
-/// Returns one sentence for each value that was probably given in another unit, or that the run does not use although
-/// it differs from the value used.
+/// Returns one sentence for each value that is probably a mistake, for example one in a wrong unit, and for each given
+/// value that the run ignores.
 std::vector<std::string> plan_warnings(const ScenePlan& plan);
 
-/// Returns the notes of the reading of a scene, and one note for each mesh of several parts that deforms. The note
-/// names one body with this mesh.
+/// Returns the notes from reading the scene, and one note for each mesh that consists of several unconnected parts and
+/// belongs to a deformable body. The note names one such body.
 std::vector<std::string> plan_notes(const ScenePlan& plan);
 
 /// Prints one line for each text on standard error. `kind`: NOTE or WARNING.

@@ -24,11 +24,10 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
     return text;
 }
 
-/// Returns the number of steps between two exports for which about `file_count` of the `steps` steps of a run are
-/// exported.
+/// Returns the interval [steps] at which a run of `steps` steps exports about `file_count` of them.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    // The upper limit is needed because the number of steps may be infinite.
+    // The upper limit is needed because `steps` may be infinite, which has no integer value.
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
@@ -69,7 +68,7 @@ private:
     std::filesystem::path folder_;
     std::string scene_;
     ProblemsOf of_;
-    std::optional<int> every_;  // number of steps between two exported steps
+    std::optional<int> every_;  // number of steps between two exported steps; default: default_every()
     long files_ = 0, steps_ = 0;
     double seconds_ = 0;  // wall time of the export [s]
     std::exception_ptr failure_;

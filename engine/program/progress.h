@@ -34,17 +34,17 @@ void clear_bar();
 
 class Progress {
 public:
-    /// `wanted`: if false, nothing is displayed. `seconds`: simulated time of the run [s]. `steps`: estimated number of
-    /// steps. `step`: step length [s]. `begin`: time at which the run begins or resumes [s]. All output goes to
-    /// standard error.
+    /// `wanted`: if false, nothing is displayed. `seconds`: simulated time at which the run ends [s]. `steps`:
+    /// estimated number of steps. `step`: step length [s]. `begin`: simulated time at which the run begins or resumes
+    /// [s]. All output goes to standard error.
     Progress(bool wanted, double seconds, double steps, double step, double begin);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
     /// Displays the progress if the last display was long enough ago: the bar ten times a second, lines after 1, 2, 4,
-    /// ... s and later every ten minutes. The first call that displays something also prints a summary of the run. The
-    /// function is cheap enough to be called before every step.
+    /// ... s and later every ten minutes. Before the first display it prints the duration and estimated step count of
+    /// the run. `time`: simulated time [s]. The function is cheap enough to be called at every step.
     void show(double time, std::uint64_t steps);
 
 private:
@@ -75,7 +75,7 @@ public:
 private:
     bool wanted_;
     std::size_t bodies_;
-    double last_ = 0;  // time of the last line [s]
+    double last_ = 0;  // wall time of the last line [s]
     Stopwatch watch_;
 };
 
@@ -92,12 +92,12 @@ public:
 
 private:
     bool wanted_, terminal_;
-    double next_ = 10;  // time of the next line of a log [s]
+    double next_ = 10;  // wall time of the next line, if standard error is not a terminal [s]
     Stopwatch watch_;
 };
 
-/// Plans a scene. While a surface of the scene is filled with tetrahedra, the activity is shown on a terminal if
-/// `wanted` is true.
+/// Plans a scene. If `wanted` is true, an ActivityLine shows the progress while surfaces of the scene are filled with
+/// tetrahedra.
 ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool wanted);
 
 }  // namespace skerry

@@ -25,23 +25,24 @@ struct RepairedMesh {
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
     // Number of nodes that were split because some of their tetrahedra were not connected by faces.
     std::size_t parted = 0;
-    // Reason why no new tetrahedra were accepted. The mesh then has the old tetrahedra, and only nodes were split.
-    // Otherwise empty.
+    // Reason why the mesh has the old tetrahedra although nodes were split; empty if it has new tetrahedra or is
+    // refused.
     std::string kept;
-    std::string refusal;  // reason why the mesh must not be written; empty if it is better than the old mesh
+    std::string refusal;  // reason why the mesh must not be written; otherwise empty
 };
 
 /// Fills the surface of the mesh with new tetrahedra, and returns the mesh with the longest stable step.
 ///
 /// 1. Nodes whose tetrahedra are not connected by faces are split (part_fans.h).
-/// 2. The surface is filled as it is.
-/// 3. If `tolerance` is above 0, a surface without needles and caps (knots) is also filled. Removing the knots moves
+/// 2. The unchanged surface is filled.
+/// 3. If `tolerance` is above 0, the surface is also filled after removal of its needles and caps. The removal moves
 /// the surface by at most `tolerance`, as a fraction of the diagonal of the bounding box.
 /// 4. If no new tetrahedra are better than the old ones but nodes were split, the old tetrahedra are returned with
-/// these nodes.
+/// the split nodes.
 ///
-/// `progress` is called many times a second with a description of the current activity. Throws SceneError if the
-/// surface cannot be filled.
+/// `what`: name of the mesh in errors. `progress` is called many times a second with a description of the current
+/// activity. Throws SceneError if the boundary of the mesh is not a closed manifold, or if the mesh has several labels
+/// or unconnected parts.
 RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
                     const std::function<void(const std::string&)>& progress);
 

@@ -36,9 +36,9 @@ namespace {
 const char* const advice =
     "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps at the start";
 
-/// Simulates the frames of a run, from the progress in `memory` on. An error is stored in result.status. If a run stops
-/// within a call of advance(), no new checkpoint is written. advance() divides its duration into equal steps, so a
-/// resumed run could not reproduce the remaining steps of that call.
+/// Simulates the frames of a run, beginning at the frame and sample that `memory` holds. An error is stored in
+/// result.status. If a run stops within a call of advance(), no new checkpoint is written, because advance() divides
+/// its duration into equal steps, and a resumed run could not reproduce the remaining steps of that call.
 ///
 /// With several ranks all of them run this loop. The world is gathered for each sample, frame and checkpoint.
 class FrameLoop {
@@ -169,7 +169,8 @@ private:
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
 
-/// Moves the bodies to a static equilibrium. If there is none, the run ends with this status before its first step.
+/// Moves the bodies to a static equilibrium. If none is found, sets result.status to the reason, and the run ends
+/// before its first step.
 void start_from_rest(World& world, RunResult& result) {
     const SignalGuard guard;
     const Stopwatch watch;
@@ -199,10 +200,11 @@ void count_bodies(const World& world, RunResult& result) {
     }
 }
 
-/// Returns one text for each mesh, material and kind of element that is too stiff in bending. The text names one body
-/// of this kind. Bodies that hardly deformed in the run, and rigid bodies, are left out.
+/// Returns one text for each combination of mesh, materials and kind of element with a part that is too stiff in
+/// bending. The text names the first body with this combination. Rigid bodies and bodies that hardly deformed in the
+/// run are left out.
 std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, std::span<const ErrorEstimate> errors) {
-    constexpr Real least_deformation = 0.01;  // share of the displacement of a body below which deformation is ignored
+    constexpr Real least_deformation = 0.01;  // least share of deformation in the motion of a reported body
     std::vector<std::string> found;
     std::set<std::tuple<std::size_t, std::size_t, std::vector<std::pair<int, std::size_t>>, ElementKind>> seen;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);
@@ -325,9 +327,9 @@ RunStart run_start(const RunBeginning& beginning, const World& world) {
             .row_step = plan.even() ? 0 : plan.probe_step};
 }
 
-/// Collective. Gives all ranks the beginning that rank 0 has found, and notes it in the results.
+/// Collective. Copies `beginning` and the values that `result` has at the beginning from rank 0 to all other ranks.
 void share_beginning(const RunRanks& ranks, RunBeginning& beginning, RunResult& result) {
-    const SignalGuard guard;  // for ranks that wait here while rank 0 moves the bodies to a static equilibrium
+    const SignalGuard guard;  // else a signal would kill ranks that wait here while rank 0 finds an equilibrium
     const RunPlan& plan = beginning.plan;
     const Json first = ranks.of_first({{"memory", to_json(beginning.memory)},
                                        {"plan", {plan.seconds, plan.frame_step, plan.samples, plan.probe_step}},

@@ -14,11 +14,11 @@ namespace skerry {
 class RunOutputs {
 public:
     /// Opens the outputs that `options` request. Throws SceneError if an output cannot be written, or would replace
-    /// another output or an input. Later failures and the time spent are added to `result`. All arguments must outlive
-    /// the object.
+    /// another output or an input. Later failures and the time spent are added to `result`. `options`, `scene` and
+    /// `result` must outlive the object.
     RunOutputs(const RunOptions& options, Scene& scene, const RunStart& start, RunResult& result);
 
-    /// Must be called after every call of World::advance.
+    /// Passes the world to all outputs. Must be called after every call of World::advance.
     void sample(const World& world);
     void add_frame(const World& world);
     /// Completes the files of all outputs, and adds their descriptions to RunResult::written.
@@ -33,8 +33,8 @@ private:
         std::unique_ptr<Writer> writer;
         bool failed = false;
     };
-    /// Calls `write` for each output that has not failed. If the call throws, reports the failure on standard error at
-    /// once.
+    /// Calls `write` for each output that has not failed. If the call throws, the output counts as failed, and the
+    /// error is added to the result and printed to standard error at once.
     void for_each(FunctionRef<void(Writer&)> write);
 
     std::vector<Output> outputs_;

@@ -7,12 +7,13 @@
 
 namespace skerry {
 
-/// Returns the plan of a run that is resumed at `time` [s]. The lengths of frames and samples stay the same, so that
-/// the calls of advance are the same as without the interruption. Throws SceneError if nothing is left to simulate.
+/// Returns the plan of a run that is resumed at `time` [s]. The times between frames and between samples are those in
+/// `memory`, so that the calls of advance are the same as without the interruption. Throws SceneError if nothing is
+/// left to simulate, or if there are too many frames.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if a run with a duration of `planned` seconds would end within this frame, and `run_plan` gives the frame
-/// another length.
+/// True if the duration of a resumed run was changed from `planned` seconds, which end within this frame, and the frame
+/// has another length in `run_plan`. The checkpoint may then lie in the shortened frame.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

@@ -21,7 +21,7 @@ struct BrokenTie {
     std::string name;
     std::size_t nodes = 0, broken = 0;          // numbers of tied nodes, and of those that have broken off
     Real first_time = infinity, last_time = 0;  // times at which the first and the last of them broke off [s]
-    Real largest_force = 0;                     // largest force of the tie in a step [N]
+    Real largest_force = 0;                     // largest magnitude of the tie's total force in a step [N]
 };
 
 struct RunResult {
@@ -34,13 +34,13 @@ struct RunResult {
     int threads = 0;  // number of threads of each rank
     RanksReport ranks;
     double seconds_simulated = 0;
-    double seconds_wall = 0;    // wall time of the steps, without outputs [s]
+    double seconds_wall = 0;    // wall time of all steps, including those before a restart [s]
     double seconds_load = 0;    // wall time for reading the scene and its meshes [s]
     double seconds_setup = 0;   // wall time between reading the scene and the first frame [s]
     double seconds_output = 0;  // wall time for writing outputs and checkpoints [s]
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]
-    int checkpoints = 0, checkpoints_failed = 0;  // number of checkpoints written since the run was started or resumed
+    int checkpoints = 0, checkpoints_failed = 0;  // numbers written and failed since the start or restart
     std::size_t rigid_bodies = 0, implicit_bodies = 0;
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
@@ -65,8 +65,8 @@ struct RunResult {
 /// several ranks all of them call this function. The result is complete on rank 0.
 RunResult simulate(const RunOptions& options, RunRanks& ranks);
 
-/// Returns the reasons not to rely on the run, one sentence each, with a remedy. Returns nothing if all error estimates
-/// are small.
+/// Returns the reasons not to rely on the run, one sentence each, with a remedy. Returns an empty list if there are
+/// none.
 std::vector<std::string> warnings_of(const RunResult& result);
 /// Returns the JSON document of --stats. Scripts rely on the names of its keys.
 Json statistics_of(const RunResult& result);

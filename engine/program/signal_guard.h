@@ -10,12 +10,13 @@
 namespace skerry {
 
 inline volatile std::sig_atomic_t caught_signal = 0;
-// text that a signal of the launcher (mpirun or srun) writes to standard error at once, because the launcher may kill
-// the process soon; null: none
+// text that the signal handler writes to standard error at once if the signal comes from the launcher (mpirun or srun),
+// because the launcher may kill the process soon; null: none
 inline std::atomic<const char*> signal_note = nullptr;
 
-/// Handles signals during a run. The first SIGINT or SIGTERM ends the run between two steps, and the second kills the
-/// process. SIGXFSZ is ignored, so that exceeding the file size limit becomes an ordinary write error.
+/// Handles signals while the object exists. The first SIGINT or SIGTERM only sets caught_signal, and the run then ends
+/// between two steps. Another signal of the same kind kills the process. SIGXFSZ is ignored, so that exceeding the file
+/// size limit becomes an ordinary write error.
 class SignalGuard {
 public:
     SignalGuard() {

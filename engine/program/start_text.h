@@ -26,8 +26,8 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
-/// Depth of an overlap, or of a penetration into the contact distance, above which a warning is given, as a fraction of
-/// the mean edge length.
+/// Depth of an overlap, or depth by which surfaces are closer than their contact distance, above which a warning is
+/// given, as a fraction of the mean edge length.
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
@@ -36,7 +36,8 @@ inline std::string into_shell_text(Real depth) {
 }
 
 /// Rotation of a collider per step above which a warning is given [rad]. Contacts assume that the surface moves
-/// straight within a step. At this rotation the position error of a surface point is 3 % of its distance from the axis.
+/// straight within a step. At this rotation the position error of a surface point is 3 % of its distance from the axis
+/// (half the square of the rotation).
 inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {
@@ -46,8 +47,8 @@ inline std::string turning_text(const WorldReport& report) {
            "to " + percent(visible_turn / report.collider_turn) + " of the present length";
 }
 
-/// Describes how the overlaps were resolved, for example
-/// "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm".
+/// Describes how the overlaps were resolved, for example "3 overlaps, 4 bodies moved apart, the largest movement ball_2
+/// by 1.5 mm". Returns an empty text if no body was moved.
 inline std::string moves_text(const WorldReport& report) {
     const StartMove* furthest = nullptr;
     for (const StartMove& move : report.start_moves)

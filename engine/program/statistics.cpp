@@ -36,7 +36,7 @@ Json errors_of(const RunResult& result) {
     return errors;
 }
 
-/// Returns the error estimates of the run. `warnings` describes the estimates that are too large.
+/// Returns the error estimates of the run. The key `warnings` of the document describes those that are too large.
 Json trust_of(const RunResult& result) {
     const WorldReport& r = result.report;
     return object_of({

@@ -31,9 +31,9 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
     return found;
 }
 
-/// Sorts all tetrahedra by the step that they allow, smallest first. Steps within 10 % of the smallest step count as
-/// equal, and such tetrahedra are sorted by altitude. The reason: a bad tetrahedron also shortens the steps of its
-/// neighbours, because they share nodal masses. Only its small altitude shows that it is the bad one.
+/// Sorts all tetrahedra by the step that they allow, smallest first. Tetrahedra whose steps exceed the smallest one by
+/// less than 10 % are sorted by altitude instead: a bad tetrahedron also shortens the steps of its neighbours, because
+/// they share nodal masses, and only its small altitude shows that it is the bad one.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
     const Real least = about * *std::min_element(step.begin(), step.end());
@@ -74,8 +74,8 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
 // Number of tetrahedra above which a mesh counts as large. It takes seconds to build another world with such a mesh.
 constexpr std::size_t many = 100'000;
 
-/// Returns the ratio of two steps: the longest step that one of the `count` worst tetrahedra allows, and the shortest
-/// step.
+/// Returns the longest step that one of the `count` worst tetrahedra allows, divided by the shortest step. The worst
+/// tetrahedra are those with the shortest steps.
 Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     std::vector<Real> sorted(step.begin(), step.end());
     const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(count - 1);
@@ -83,14 +83,15 @@ Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     return *last / *std::min_element(sorted.begin(), last + 1);
 }
 
-/// Computes the stable step of the mesh without its worst tetrahedra. Tetrahedra are removed in several rounds, because
-/// each removal changes the nodal masses and so the ranking of the remaining tetrahedra. `step`: step that each
-/// tetrahedron allows [s].
+/// Computes the stable step of the mesh without each of the fractions `shares` of its worst tetrahedra. A fraction is
+/// removed in several rounds, because each removal changes the nodal masses and so the ranking of the remaining
+/// tetrahedra. `step`: step that each tetrahedron allows [s]. `order`: result of worst_first().
 void find_steps_without(const Mesh& mesh, const StepCase& of, std::span<const Real> step, std::vector<Index> order,
                         StepBound& bound) {
-    constexpr Real least_ratio = 1.5;  // least alike_ratio for which a large mesh is tried
+    // In a large mesh, removal of tetrahedra whose steps are more alike than this ratio gains little and is skipped.
+    constexpr Real least_ratio = 1.5;
     const bool large = mesh.tetrahedra.size() > many;
-    // number of rounds in which each fraction in `shares` is removed
+    // number of rounds for each fraction; a large mesh takes seconds per round
     const std::size_t rounds = large ? 1 : 3;
     Mesh rest = mesh;
     std::size_t gone = 0;

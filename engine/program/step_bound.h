@@ -11,8 +11,8 @@ namespace skerry {
 struct BodyPlan;
 struct ScenePlan;
 
-/// Returns the StepCase of a body. The body is treated as explicit and elastic, so that its mesh has a stable step even
-/// if its dynamics are rigid or implicit.
+/// Returns the StepCase of a body (explicit_body.h): its materials and settings. step_bound() treats the body as
+/// explicit and elastic, so that its mesh has a stable step even if its dynamics are rigid or implicit.
 StepCase step_case(const ScenePlan& plan, const BodyPlan& body);
 
 struct CostlyTetrahedron {
@@ -33,13 +33,13 @@ struct StepWithout {
 struct StepBound {
     Real step = 0;  // [s]
     ElementKind element{};
-    // The tetrahedron with the smallest stable step, then the flattest tetrahedra among those whose steps are nearly as
-    // small.
+    // The tetrahedron with the smallest step, then others by increasing step. Tetrahedra whose steps exceed the
+    // smallest one by less than 10 % are sorted by altitude.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // In a large mesh, removal of the worst tetrahedra is not tried if their steps are too similar. alike_share is then
-    // the fraction whose removal was not tried, and alike_ratio the ratio of the longest to the shortest step among
-    // them. Both are 0 if nothing was skipped.
+    // In a mesh of more than 100,000 tetrahedra, a fraction of worst tetrahedra is not removed if their steps are too
+    // similar. alike_share is then the largest fraction that was skipped, and alike_ratio the ratio of the longest to
+    // the shortest step in it. Both are 0 if nothing was skipped.
     Real alike_share = 0;
     Real alike_ratio = 0;
 };
@@ -49,8 +49,8 @@ struct StepBound {
 /// body.
 StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details);
 
-/// Computes the stable step, with details, of a body of a world in which no step was planned or made since the body was
-/// added. `mesh` and `of` describe the body.
+/// Computes the stable step, with details, of a body in an existing world. The world must not have planned or made a
+/// step since the body was added. `mesh` and `of` describe the body.
 StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const StepCase& of);
 
 }  // namespace skerry

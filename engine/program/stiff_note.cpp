@@ -12,19 +12,20 @@ namespace skerry {
 
 namespace {
 
-// Number of steps below which a run needs no note. A scene of a few hundred tetrahedra makes so many steps in about a
-// minute.
+// Number of steps below which a run needs no note. With a few hundred tetrahedra these steps take about a minute.
 constexpr double few_steps = 1e5;
-// Least ratio of the step length without the stiff bodies to the present one for which a note is given.
+// Smallest factor by which the steps would be longer without the stiff bodies for a note to be given.
 constexpr Real much_longer = 4;
 // Longest step by default in a world of rigid and implicit bodies (Settings::step_size) [s].
 constexpr Real usual_step = 1.0 / 120;
 
-/// Explicit bodies whose stable steps are close to the shortest one, and the longest step without them.
+/// Stiff bodies: the explicit ones whose stable steps are less than `much_longer` times the shortest. Bodies with
+/// automatic dynamics are not among them.
 struct ShortSteps {
     std::size_t first = 0;  // index in ScenePlan::bodies of the body with the shortest step
-    std::size_t count = 0;
-    Real step = infinity, others = infinity;  // [s]
+    std::size_t count = 0;  // number of stiff bodies
+    // shortest stable step of the explicit bodies, and of all bodies that are not stiff [s]
+    Real step = infinity, others = infinity;
 };
 
 ShortSteps short_steps(const ScenePlan& plan, const World& world) {
@@ -49,7 +50,7 @@ ShortSteps short_steps(const ScenePlan& plan, const World& world) {
     return stiff;
 }
 
-/// Number of tetrahedra that need much shorter steps than most tetrahedra of the body; 0 if all need similar steps.
+/// Number of tetrahedra whose steps are less than 1 / `much_longer` of the median.
 std::size_t count_bad(std::vector<Real> step) {
     const auto middle = step.begin() + static_cast<std::ptrdiff_t>(step.size() / 2);
     std::ranges::nth_element(step, middle);
@@ -58,8 +59,8 @@ std::size_t count_bad(std::vector<Real> step) {
         std::ranges::count_if(step, [usual](Real each) { return much_longer * each < usual; }));
 }
 
-/// Note about a body that needs much shorter steps because of the forces on it than its elements need. Returns an empty
-/// text if there is none.
+/// Note about a body on which springs, cables or other forces require much shorter steps than its elements do. Returns
+/// an empty text if there is no such body. `steps`: estimated number of steps of the run.
 std::string note_of_forces(const World& world, double steps) {
     const Model& model = WorldAccess::state_of(world).model;
     Index body = no_index;

@@ -104,7 +104,8 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
         text += (text.empty() ? "" : between) + before + size + " of " + after +
                 (errors.size() > 1 ? " (body '" + worst->name + "')" : "");
     };
-    // The mesh changes only the displacements by deformation.
+    // `deflection` is relative to the displacements by deformation. Times `deformation`, their share of the motion, it
+    // is relative to the motion.
     add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
     const bool is_rigid_motion = std::ranges::any_of(
         errors, [](const ErrorEstimate& of) { return of.deformation < 0.9 && !std::isnan(of.deflection); });
@@ -153,7 +154,7 @@ std::string warning_lines(const RunResult& result) {
     return summary_line("warnings", result.status == "ok" ? "none" : "none for the simulated part of the run");
 }
 
-/// Line about the processes that shared the run. Empty for a single one.
+/// Line about the processes that shared the run. Empty if there was only one.
 std::string ranks_line(const RanksReport& ranks) {
     if (ranks.count == 1) return {};
     return summary_line("ranks",

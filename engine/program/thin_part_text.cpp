@@ -11,10 +11,10 @@ namespace skerry {
 
 namespace {
 
-// A part is reported if its bending stiffness exceeds the stiffness of the material by this factor. Two layers of cubic
-// cells of smoothed elements exceed it by 1.08 to 1.17, one layer by 1.3 to 1.5.
+// A part is reported if it is stiffer in bending than the material by this factor. With smoothed elements in cubic
+// cells the factor is 1.08 to 1.17 for two layers of cells, and 1.3 to 1.5 for one layer.
 constexpr Real reported_stiffness = 1.25;
-// Excess of the bending stiffness, relative to that of the material, with cells of the recommended size.
+// Cells of the recommended size exceed the bending stiffness of the material by this fraction.
 constexpr Real accepted_excess = 0.1;
 
 /// Elements of a body: tetrahedra by material, and the constants of these materials.
@@ -29,14 +29,14 @@ struct ElementsOfThinBody {
     }
 };
 
-/// Text of a coordinate of the position of a part. Rounding errors are printed as 0.
+/// Text of a coordinate of the place of a part. Values within rounding errors of 0 are printed as 0.
 std::string coordinate(Real value, const mesh::ThinPart& part) {
     constexpr Real rounding = 1e-6;  // coordinates below this fraction of the length of the part are rounding errors
     return short_text(std::abs(value) < rounding * part.length ? 0 : value);
 }
 
 /// Least Poisson ratio at which elements of a kind are more than twice as stiff in bending as their material
-/// (docs/methods/elasticity.md 7.3).
+/// (docs/methods/elasticity.md 7.3). A value of 0.5 means never.
 Real locks_from(ElementKind kind) {
     return kind == ElementKind::linear ? 0.45 : kind == ElementKind::edge_smoothed ? 0.49 : 0.5;
 }

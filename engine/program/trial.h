@@ -13,7 +13,8 @@ struct SceneCost {
     Real simulated = 0;  // time that the trial simulated [s]
     bool whole = false;  // true if the trial simulated the whole run
     Real overlap = 0;    // deepest overlap at the start [m]
-    // Largest penetration into the contact distance at the start, minus the largest overlap [m].
+    // Largest depth by which surfaces at the start are closer than their contact distance, minus the largest overlap
+    // [m].
     Real into_shell = 0;
     Index contacts = 0;  // number of contacts at the start
     std::string failure{}, turning{};

@@ -22,8 +22,8 @@ namespace skerry {
 
 namespace {
 
-/// A page that leads a browser to an address. Other users of the machine can read the arguments of programs, but not
-/// this file, so that the token in the address stays secret. The destructor removes the file.
+/// A page that redirects a browser to an address. Other users of the machine can read the arguments of programs, but
+/// not this file, so that the token in the address stays secret. The destructor removes the file.
 class LeadingPage {
 public:
     explicit LeadingPage(const std::string& address) {
@@ -62,7 +62,7 @@ bool has_desktop() {
 /// Opens a file in the browser of the user. Does nothing if there is no program to open it.
 void open_in_browser(const std::string& path) {
     posix_spawn_file_actions_t silence;
-    posix_spawnattr_t own_group;  // so that Ctrl-C does not end the browser
+    posix_spawnattr_t own_group;  // a process group of its own, so that Ctrl-C does not end the browser
     posix_spawn_file_actions_init(&silence);
     posix_spawnattr_init(&own_group);
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -97,7 +97,7 @@ int view(const ViewOptions& options) {
     const Stopwatch watch;
     Real simulated = 0, before = scene.world.time();
     const auto go_on = [&] {
-        // The advances are added up, because a reset sets the time of the world back.
+        // Only increases of the time are added, because a reset of the view sets the time of the world back.
         simulated += std::max<Real>(0, scene.world.time() - before);
         before = scene.world.time();
         return caught_signal == 0 && !(options.seconds && simulated >= *options.seconds);

@@ -37,7 +37,7 @@ void bind_study(nb::module_& module);
 void bind_visual_surface(nb::module_& module);
 void bind_world(nb::module_& module);
 
-/// Arrays that Python passes in: C-contiguous, of exactly this type.
+/// Arrays that Python passes in: C-contiguous, with exactly these element types.
 using Vectors = nb::ndarray<const Real, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Reals = nb::ndarray<const Real, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
@@ -55,7 +55,7 @@ std::span<const std::array<Index, static_cast<std::size_t>(width)>> span_of(cons
     return {reinterpret_cast<const std::array<Index, static_cast<std::size_t>(width)>*>(rows.data()), rows.shape(0)};
 }
 
-/// A new NumPy array of the given shape with a copy of the numbers in `rows`, row by row.
+/// A new NumPy array of shape (rows.size(), row_shape...) with a copy of the numbers in `rows`.
 template <class Number, class Row>
 nb::ndarray<nb::numpy, Number> array_of(std::span<const Row> rows, std::initializer_list<std::size_t> row_shape = {}) {
     static_assert(sizeof(Row) % sizeof(Number) == 0 && std::is_trivially_destructible_v<Row>);
@@ -73,9 +73,9 @@ inline nb::ndarray<nb::numpy, Real> array_of(const std::vector<Vec3>& rows) {
     return array_of(std::span<const Vec3>(rows));
 }
 
-/// Counts the calls that run without the GIL, because Python must not end before they do: a thread that then asks for
-/// the GIL would abort the process. At the end of Python, calls of other threads are ended. A new call of such a thread
-/// raises SystemExit.
+/// Counts the calls that run without the GIL. Python must not end before these calls, because a thread that requests
+/// the GIL of an ended Python aborts the process. When Python ends, end_calls() therefore makes the calls of other
+/// threads raise SystemExit. New calls of these threads raise it, too.
 class CallScope {
 public:
     CallScope() {
@@ -86,23 +86,24 @@ public:
     CallScope(const CallScope&) = delete;
     CallScope& operator=(const CallScope&) = delete;
 
-    /// Raises SystemExit, which ends a thread without a message, if Python ends and waits for this thread. Needs no
-    /// GIL.
+    /// Raises SystemExit, which ends a thread without a message, if another thread has called end_calls(). May be
+    /// called without the GIL.
     static void raise_at_exit();
-    /// From now on ends calls of other threads. Returns the number of calls that still run.
+    /// From now on raise_at_exit() raises SystemExit in all threads but the calling one. Returns the number of calls
+    /// that still run.
     static int end_calls();
-    /// Called in a new process after fork(), which has no other threads.
+    /// Called after fork() in the child process, where only the calling thread exists.
     static void note_fork() { running = 0; }
 
 private:
     static inline std::atomic<int> running{0};
-    static inline std::atomic<unsigned long> ending{0};  // number of the thread that called end_calls(); 0 if none
+    static inline std::atomic<unsigned long> ending{0};  // identifier of the thread that called end_calls(), or 0
 };
 
 /// Calls a function without the GIL.
 template <class Function>
 auto without_gil(Function&& function) {
-    const CallScope scope;  // ends after the GIL is held again
+    const CallScope scope;  // is destroyed after `released`, so that the call counts until the GIL is held again
     nb::gil_scoped_release released;
     return function();
 }

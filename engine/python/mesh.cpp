@@ -22,7 +22,7 @@ namespace {
 
 using Notes = std::vector<std::string>;
 
-/// A mesh with exactly these arrays.
+/// Mesh with exactly these arrays: unlike in new_mesh(), inverted tetrahedra are kept.
 Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
                const std::optional<Indices>& file_number, const nb::dict& sets) {
     const auto points = span_of(nodes);
@@ -34,7 +34,7 @@ Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::
     return mesh;
 }
 
-/// A mesh whose inverted tetrahedra are turned, and notes about this.
+/// Returns a mesh, whose inverted tetrahedra are turned to positive volume, and notes about the turned ones.
 nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
                    const nb::dict& sets) {
     Mesh mesh = same_mesh(nodes, tetrahedra, labels, {}, sets);
@@ -62,7 +62,8 @@ nb::tuple read_surface(const std::string& path, Real scale) {
     return nb::make_tuple(arrays_of(surface), notes);
 }
 
-/// Fills the surface of an array of file names, or of arrays of nodes and triangles. Returns the mesh and its notes.
+/// Fills a surface with tetrahedra. The surface is given by a list of file names, or by arrays of nodes and triangles.
+/// Returns the mesh and notes about it.
 nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, IndexRows<3>>>& given, Real scale,
                std::optional<Real> edge, Real tolerance, bool cavities, Real seconds, Real bytes,
                const std::string& python) {

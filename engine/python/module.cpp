@@ -5,7 +5,8 @@ namespace skerry::python {
 
 namespace {
 
-/// Sets the Python exception skerry.SceneError. The hint becomes a note, so that it is left out of the text.
+/// Sets the Python exception skerry.SceneError. The hint is passed separately, because Python shows it as a note of the
+/// exception, so it is removed from the text.
 void raise(const SceneError& error) {
     const Complaint& parts = error.complaint();
     std::string text = error.what();
@@ -20,7 +21,7 @@ void raise(const SceneError& error) {
 
 }  // namespace
 
-/// SceneError becomes skerry.SceneError.
+/// Translates the C++ exception SceneError to the Python exception skerry.SceneError.
 void bind_errors(nb::module_&) {
     nb::register_exception_translator([](const std::exception_ptr& raised, void*) {
         try {

@@ -97,7 +97,7 @@ void bind_problem(nb::module_& module) {
         .def("mu", [](const ContactProblem& problem) { return flat_array(problem.mu); });
     module.attr("has_hdf5") = SKERRY_HAS_HDF5 != 0;
     module.def("new_problem", &new_problem);
-    // The two functions for files keep the GIL, because HDF5 is not built for several threads.
+    // read_problem and write_problem keep the GIL, because HDF5 is not built for several threads.
     module.def("read_problem", [](const std::string& file) { return read_problem(file); });
     module.def(
         "write_problem",

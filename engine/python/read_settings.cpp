@@ -27,7 +27,7 @@ nb::dict dict_of(const Struct& settings);
 template <class Struct>
 nb::object instance_of(const Struct& settings);
 
-/// Reads one value; complains about the field `name` of an object of the class `object`.
+/// Reads members of a struct from the attributes of the Python object `from`. Errors name the object and the attribute.
 class Reader {
 public:
     explicit Reader(nb::handle from) : from_(from) {}

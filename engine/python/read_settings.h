@@ -1,4 +1,5 @@
-// Settings from Python: the dataclasses of skerry/_settings.py have the names of the members of the C++ structs.
+// Conversion of settings from and to Python. The dataclasses of skerry/_settings.py have fields with the names of the
+// members of the C++ structs.
 #pragma once
 
 #include "engine/python/bind.h"
@@ -14,10 +15,9 @@
 
 namespace skerry::python {
 
-/// Reads the attributes of a Python object into a struct of settings. A missing attribute leaves the default. Throws
-/// SceneError that names object and field if a value has the wrong type. The object is named by its attribute `of`, or
-/// else by its class. Handles of materials and bodies are not read:
-/// Python passes them as arguments.
+/// Reads the attributes of a Python object into a struct of settings. A missing attribute leaves the member unchanged.
+/// If a value has the wrong type, throws a SceneError that names the field, and the object by its attribute `of`, or
+/// else by its class. Handles of materials and bodies are not read: Python passes them as arguments.
 void read(nb::handle from, Settings& to);
 void read(nb::handle from, MaterialSettings& to);
 void read(nb::handle from, OrthotropicModuli& to);

@@ -22,7 +22,7 @@ nb::object tuple_of_point(const std::optional<Vec3>& point) {
     return point ? nb::object(tuple_of(*point)) : nb::none();
 }
 
-/// Name of the Python class of a probe in skerry/_world/probes.py, and the members of the probe.
+/// Returns the name of the Python class of a probe, which is in skerry/_world/probes.py, and the members of the probe.
 nb::tuple values_of(const RecordedProbe& probe) {
     nb::dict values;
     const char* kind = std::visit(
@@ -166,7 +166,7 @@ nb::list columns_of(const Recorder& recorder) {
     return columns;
 }
 
-/// All rows one after the other, shape (rows, columns).
+/// All rows of numbers, one after the other in a flat array. Python gives it the shape (rows, columns).
 nb::ndarray<nb::numpy, Real> table_of(const Recorder& recorder) {
     std::vector<Real> values;
     values.reserve(recorder.row_count() * recorder.columns().size());

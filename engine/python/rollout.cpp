@@ -26,13 +26,13 @@ using Values = nb::ndarray<const Real, nb::ndim<1>, nb::c_contig, nb::device::cp
     throw nb::value_error(("unknown kind '" + kind + "'").c_str());
 }
 
-/// A collider or an attachment.
+/// Returns the handle of a collider or of an attachment.
 std::variant<ColliderHandle, AttachmentHandle> movable(nb::handle object) {
     if (nb::isinstance<AttachmentHandle>(object)) return nb::cast<AttachmentHandle>(object);
     return nb::cast<ColliderHandle>(object);
 }
 
-/// A cable, a cavity, a pipe, a spring, a load or fibres.
+/// Returns the handle of a cable, a cavity, a pipe, a spring, a load or fibres.
 decltype(ValueControl::object) valued(nb::handle object) {
     if (nb::isinstance<CableHandle>(object)) return nb::cast<CableHandle>(object);
     if (nb::isinstance<CavityHandle>(object)) return nb::cast<CavityHandle>(object);
@@ -42,7 +42,7 @@ decltype(ValueControl::object) valued(nb::handle object) {
     return nb::cast<LoadHandle>(object);
 }
 
-/// A control of Python: kind, handle (None for gravity) and values in the order of RolloutControl::values.
+/// A control as Python passes it: kind, handle (None for gravity) and values in the order of RolloutControl::values.
 using Control = std::tuple<std::string, nb::object, Values>;
 
 RolloutControl control_of(const Control& given) {
@@ -89,8 +89,8 @@ nb::dict dict_of(RolloutResult&& result) {
     return values;
 }
 
-/// Rolls out the given worlds, of which several may be the same. `progress` is None or is called about every 20 ms with
-/// the numbers of completed intervals and of all intervals.
+/// Rolls out the given worlds. The same world may occur several times. `progress` is None, or is called about every 20
+/// ms with the number of completed intervals and the number of all intervals, summed over the worlds.
 nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector<Control>& controls,
                      std::vector<RecordedProbe> record, Real dt, std::size_t intervals, int threads, bool keep_worlds,
                      const nb::object& progress) {

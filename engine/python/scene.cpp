@@ -38,7 +38,7 @@ SceneOverrides overrides_of(const std::vector<std::string>& assignments, std::op
     return overrides;
 }
 
-/// Lets Ctrl-C end the filling of a surface.
+/// Called repeatedly while a surface is filled. Throws if Ctrl-C was pressed, which ends the filling.
 void poll_signals(const std::string&) {
     const nb::gil_scoped_acquire held;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();

@@ -267,8 +267,8 @@ void for_each_setting(Is<SurfaceMesh> auto& s, auto&& visit) {
     visit("triangles", s.triangles);
 }
 
-/// True if a struct has the size of this many numbers and of the objects `Parts`. A new member changes the size and
-/// must be added to the list above.
+/// True if the size of a struct is that of `numbers` values of type Real and one object of each type in `Parts`. If a
+/// new member changes the size, the static_assert fails, and the member must be added to for_each_setting above.
 template <class Struct, std::size_t numbers, class... Parts>
 inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (sizeof(Parts) + ... + 0);
 static_assert(has_size<Settings, 17>);
@@ -292,7 +292,7 @@ static_assert(has_size<GasFilling, 4, TimeTable>);
 static_assert(has_size<LiquidFilling, 2, std::optional<TimeTable>>);
 static_assert(has_size<ProblemSettings, 4>);
 
-/// True for the structs that have members listed here.
+/// True for the structs for which for_each_setting is defined above.
 template <class T>
 concept HasSettings = requires(T& settings) {
     for_each_setting(settings, [](const char*, auto&) {});

@@ -1,4 +1,4 @@
-// Studies: error bars of the results of a scene.
+// Studies, which estimate the errors of the results of a scene.
 #include "skerry/study.h"
 
 #include <span>
@@ -11,8 +11,8 @@ namespace skerry::python {
 
 namespace {
 
-/// Runs a study. `progress` is None or is called about every 20 ms with the share that is done and the numbers of runs
-/// that are done and of all runs. If Python raises an exception, all runs stop.
+/// Runs a study. `progress` is None or is called about every 20 ms with the completed share of the work, the number of
+/// completed runs and the number of planned runs. If `progress` or a signal handler raises an exception, all runs stop.
 StudyResult run_study(const std::string& scene, double error, const std::vector<std::string>& probes,
                       std::optional<Real> seconds, const std::vector<std::string>& assignments, int threads,
                       std::optional<double> budget, const std::string& folder, bool redo, const std::string& python,
@@ -36,7 +36,7 @@ StudyResult run_study(const std::string& scene, double error, const std::vector<
     return without_gil([&] { return study(scene, settings); });
 }
 
-/// Times and columns of a run: a tuple of the times and a dictionary of values by "PROBE.QUANTITY".
+/// Results of run `number`: a tuple of the array of times [s] and a dictionary of arrays of values by "PROBE.QUANTITY".
 nb::tuple series_of(const StudyResult& result, std::size_t number) {
     const StudyRun& run = result.runs.at(number);
     nb::dict columns;

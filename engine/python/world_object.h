@@ -11,12 +11,12 @@
 
 namespace skerry::python {
 
-/// A world, the thread that uses it at present, and the arrays that show its memory.
+/// A world with a record of the thread that uses it at present and of the NumPy arrays that show its memory.
 struct WorldObject {
     World world;
-    std::atomic<unsigned long> user{0};  // number of the thread that is inside a call; 0 if none is
-    int depth = 0;                       // number of nested calls of this thread
-    std::vector<BodyHandle> views{};     // body of each living array that shows memory of the world
+    std::atomic<unsigned long> user{0};  // PyThread_get_thread_ident() of the thread inside a call; 0: none
+    int depth = 0;                       // depth of nested calls of the thread `user`; 1 without nesting
+    std::vector<BodyHandle> views{};     // for each living NumPy array that shows memory of the world: its body
 
     explicit WorldObject(World&& from);
     /// In a process made by fork(), the threads of the world do not exist. The world is then left in memory, because
@@ -24,8 +24,8 @@ struct WorldObject {
     ~WorldObject();
 };
 
-/// Marks a world as in use by this thread until the end of the scope. If another thread uses the world, raises
-/// skerry.BusyError. Raises RuntimeError in a process made by fork() from one that has started threads.
+/// Marks a world as in use by this thread until the end of the scope. Raises skerry.BusyError if another thread uses
+/// the world. Raises RuntimeError if this process was forked after a world had started threads.
 class Use {
 public:
     explicit Use(WorldObject& object) : object_(object) {
@@ -45,7 +45,7 @@ public:
     static void require_threads() {
         if (threads_lost) raise_threads_lost();
     }
-    /// Called when a world starts or uses threads.
+    /// Called when a world starts or may start threads. A later fork() would lose these threads.
     static void note_threads() { threads_started = true; }
     /// Called in a new process after fork().
     static void note_fork() { threads_lost = threads_started; }
@@ -72,7 +72,8 @@ auto guarded_as(Result (*function)(World&, Arguments...)) {
         return function(object.world, std::forward<Arguments>(arguments)...);
     };
 }
-/// Makes a method of WorldObject of a function of World: guarded([](World& world, ...) {...}).
+/// Converts a function of World, such as [](World& world, ...) {...}, to a method of WorldObject that marks the world
+/// as in use (class Use).
 template <class Function>
 auto guarded(Function function) {
     return guarded_as(+function);

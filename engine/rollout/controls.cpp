@@ -66,7 +66,7 @@ ControlledObject object_of(const RolloutControl& control) {
         control.what);
 }
 
-/// Prefix of the name of a control, before the name of its object, and number of values per interval.
+/// Start of the title of a control, which the name of its object follows, and number of values per interval.
 struct ControlKind {
     const char* title;
     std::size_t count;
@@ -96,7 +96,8 @@ Vec3 vector_at(std::span<const Real> values, std::size_t first) {
     return {values[first], values[first + 1], values[first + 2]};
 }
 
-/// The values of a control for one interval of one world. `count`: number of values per interval.
+/// Values of a control for one interval of one world. A control has values for each world, or one list that all worlds
+/// use. `count`: number of values per interval.
 std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
                                 std::size_t world, std::size_t interval) {
     const bool for_all = control.values.size() == intervals * count;
@@ -106,7 +107,7 @@ std::span<const Real> values_of(const RolloutControl& control, std::size_t count
 /// Applies the values of one interval to a world.
 struct ApplyControl {
     std::span<const Real> values;
-    Real dt;  // [s]
+    Real dt;  // length of the interval [s]
     std::vector<Vec3>& forces;
     World& world;
 
@@ -141,7 +142,7 @@ struct ApplyControl {
     void operator()(const ValueControl& control) const { set_controlled_value(world, control, values[0]); }
 };
 
-/// Sets the value of a ValueControl, by the kind of its object.
+/// Sets the quantity that a ValueControl prescribes for its kind of object, such as the rest length of a spring.
 struct SetValue {
     World& world;
     const TimeTable& value;

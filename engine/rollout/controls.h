@@ -14,32 +14,36 @@
 
 namespace skerry {
 
-/// Sets the value of the object of a control.
+/// Prescribes `value` over time for the quantity of a control, such as the rest length of a spring.
 void set_controlled_value(World& world, const ValueControl& control, const TimeTable& value);
-/// Gives the motor of a joint the speed, the position or the keys of `target`. Its strength and its greatest speed stay
-/// unchanged.
+/// Gives the motor of a joint the speed, the position or the keys of `target`. Strength and largest speed of the motor
+/// stay unchanged; those of `target` are ignored.
 void set_motor_target(World& world, JointHandle joint, JointMotor target);
 
-/// Control of the motor of a joint, by its present kind of target. Throws SceneError if the joint has no motor.
+/// MotorSpeedControl of a joint whose motor now has a target speed, otherwise MotorPositionControl. Throws SceneError
+/// if the joint has no motor.
 SliderControl motor_control(const World& world, JointHandle joint);
-/// SI unit of the value that a control sets, which must not be a PoseControl.
+/// SI unit of the quantity that a control sets. The control must not be a PoseControl: its unit, m or rad, depends on
+/// the slider.
 std::string unit_of(const World& world, const SliderControl& control);
-/// Value that a control sets, over time. The control must not be a PoseControl. Throws SceneError for a pipe without
-/// reservoir.
+/// Present time course of the quantity that a control sets. The control must not be a PoseControl. Throws SceneError
+/// for a pipe between two cavities and for a joint without motor.
 TimeTable course_of(const World& world, const SliderControl& control);
-/// Sets a target of a slider to a value at once, without a motion to it.
+/// Sets a target of a slider to a value at once; set_slider() lets it change gradually.
 void start_target(World& world, const Slider& slider, const SliderTarget& target, Real value);
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.
 std::size_t number_count(const World& world, const RolloutControl& control);
-/// Returns the number that `count_in` finds in each world. Throws SceneError that names the world if the numbers differ
-/// or if `count_in` throws one. `title`: name of the number in messages.
+/// Returns count_in(world), which must be equal for all worlds. Throws SceneError that names the world if its number
+/// differs from that of the first world, or if count_in() throws a SceneError. `title`: name of the number in messages.
 std::size_t agreed_count(std::span<const World* const> worlds, const std::string& title,
                          FunctionRef<std::size_t(const World&)> count_in);
-/// Checks number and values of all controls, and that no object has two controls. `worlds`: at least one world.
+/// Checks that the values of all controls are finite and have the right number, and that no object has two controls.
+/// `worlds`: at least one world.
 void check_controls(std::span<const World* const> worlds, const RolloutSettings& settings);
-/// Applies the values of all controls for one interval of the world with this number. `counts`: number of values of
-/// each control per interval. `forces` is memory that is used again. Throws SceneError that names the control.
+/// Applies the values of all controls for one interval to `world`. `number`: index of the world in the rollout.
+/// `counts`: number of values of each control per interval. `forces`: scratch memory. Throws SceneError that names the
+/// control.
 void apply_controls(const RolloutSettings& settings, std::span<const std::size_t> counts, std::size_t number,
                     std::size_t interval, std::vector<Vec3>& forces, World& world);
 

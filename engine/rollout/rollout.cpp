@@ -37,7 +37,7 @@ void check_settings(std::size_t world_count, const RolloutSettings& settings) {
                "a number of threads >= 0 (0: the number of cores)");
 }
 
-/// Returns the state of a world, after a check that a rollout can start from it.
+/// Completes pending changes of a world and returns its state. Throws SceneError if a rollout cannot start from it.
 WorldState& source_of(const World* world, std::size_t number, Real dt) {
     if (!world) refuse("rollout", "worlds", "a null pointer", "a world");
     // The cast is valid, because the state of a world is never a constant object.
@@ -52,7 +52,8 @@ WorldState& source_of(const World* world, std::size_t number, Real dt) {
     return state;
 }
 
-/// Marks worlds as advancing during the lifetime of this object, so that go_on cannot change them.
+/// Marks worlds as advancing during the lifetime of this object, so that a call of RolloutSettings::go_on cannot change
+/// them.
 class SourcesScope {
 public:
     explicit SourcesScope(std::span<WorldState* const> worlds) : worlds_(worlds) { mark(true); }
@@ -80,7 +81,7 @@ std::vector<SeriesColumn> columns_of(std::span<const World* const> worlds, const
     return columns;
 }
 
-/// A rollout that is running. Each world writes only its own part of the arrays of the result.
+/// A running rollout. Each world writes only its own rows of the arrays of the result, so that no lock is needed.
 class RunningRollout {
 public:
     RunningRollout(std::span<const World* const> worlds, const RolloutSettings& settings) : settings_(settings) {

@@ -51,7 +51,7 @@ JointDrive motor_drive(const Model& model, JointHandle joint) {
     return drive;
 }
 
-/// Value of a control over time.
+/// Present time course of the quantity that a control sets.
 struct CourseOfControl {
     const Model& model;
 
@@ -88,7 +88,7 @@ Real value_of(const World& world, const Slider& slider, const SliderTarget& targ
     return slider.along.dot(now.position - target.start.position) + slider.about.dot(rotation_vector(turned));
 }
 
-/// Lets one target of a slider follow a course to its last key.
+/// Drives one target of a slider along the time course `course` of the value. The last value is held.
 struct FollowCourse {
     World& world;
     const Slider& slider;
@@ -101,8 +101,8 @@ struct FollowCourse {
             const Pose pose = pose_at(slider, target.start, value);
             return Keyframe{time, pose.position, pose.rotation};
         };
-        // A motion between two poses must turn by less than half a revolution. The key halfway allows twice as much,
-        // which is the largest range of a slider.
+        // A motion between two poses must turn by less than half a revolution. With a key halfway the motion may turn
+        // by up to a revolution, which is the largest range of a slider.
         const std::array keys{key_at((from.time + to.time) / 2, (from.value + to.value) / 2),
                               key_at(to.time, to.value)};
         std::visit([&](auto object) { follow_poses(world, object, keys); }, control.object);
@@ -144,7 +144,7 @@ void set_slider(World& world, const Slider& slider, Real value) {
         refuse("slider '" + slider.name + "'", "value", short_text(value),
                "a value from " + short_text(slider.low) + " to " + short_text(slider.high) + " " + slider.unit);
     Real duration = 1e-3;  // least duration, so that the times of the two keys differ also for tiny changes [s]
-    for (const SliderTarget& target : slider.targets)  // refuses removed objects before any object is changed
+    for (const SliderTarget& target : slider.targets)  // value_of() refuses removed objects before any object changes
         duration = std::max(duration, std::abs(value - value_of(world, slider, target)) / slider.fastest);
     const Real now = world.time();
     for (const SliderTarget& target : slider.targets) {

@@ -41,7 +41,8 @@ private:
         refuse_in(file_.string(), in_quotes(text_), {}, found, expected, hint);
     }
 
-    /// Refuses a place inside a material that the scene lacks, because no body would use this new material.
+    /// Refuses a place inside a material that the scene lacks: a misspelt name would create a material that no body
+    /// uses.
     void refuse_new_material(const Json& scene) const {
         Assignment rest = *this;
         if (rest.next_step().key != "materials" || rest.place_.empty()) return;
@@ -55,7 +56,7 @@ private:
                nearest_hint(name, known));
     }
 
-    /// Returns the position of the first "=" outside of quotes.
+    /// Returns the index in the text of the first "=" outside of quotes.
     std::size_t end_of_place() const {
         bool quoted = false;
         for (std::size_t i = 0; i < text_.size(); ++i) {
@@ -112,7 +113,7 @@ private:
 
     const std::string& text_;
     const std::filesystem::path& file_;
-    std::string_view place_;  // remaining part
+    std::string_view place_;  // part of the path that next_step() has not removed yet
     std::string value_;
 };
 

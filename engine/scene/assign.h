@@ -9,9 +9,9 @@
 namespace skerry {
 
 /// Applies an assignment PLACE=VALUE to the content of a scene file. PLACE has the form used in error messages:
-/// bodies[3].mesh.ball.radius, materials["soft rubber"].E. Missing objects are created, except materials, and list
-/// items must exist. VALUE is read as JSON; if it is not valid JSON, it is taken as a text. Throws SceneError that
-/// names `file` and the assignment.
+/// bodies[3].mesh.ball.radius, materials["soft rubber"].E. JSON objects on the way to PLACE are created if they are
+/// missing. List items must exist, and so must a material if PLACE lies inside it. VALUE is read as JSON; if it is not
+/// valid JSON, it is taken as a text. Throws SceneError that names `file` and the assignment.
 void assign(const std::string& assignment, const std::filesystem::path& file, Json& scene);
 
 }  // namespace skerry

@@ -45,7 +45,7 @@ std::vector<std::filesystem::path> CaseHasher::files() const {
 std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     const auto known = files_.find(file);
     if (known != files_.end()) return known->second;
-    // Preliminary hash of the file, which is used if the file includes itself.
+    // Preliminary hash, which ends the recursion if the file includes itself.
     files_[file] = 0;
     Hash hash;
     std::ifstream stream(file, std::ios::binary);

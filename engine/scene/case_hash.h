@@ -1,4 +1,4 @@
-// Hash of all inputs that determine the result of a case.
+// Hash of a scene, the assignments that change it and the files that it names.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@ namespace skerry {
 
 class Hash;
 
-/// Computes hashes of the cases of one scene. The hash covers the scene after the assignments of the case, and all
-/// scene and mesh files that the scene names. Each file is read once.
+/// Computes hashes of the cases of one scene. A case is the scene with a list of assignments. Its hash covers the scene
+/// after the assignments, and all scene and mesh files that the scene names. Each file is read once.
 class CaseHasher {
 public:
     /// Throws SceneError if the scene file cannot be read.
     explicit CaseHasher(const std::filesystem::path& scene);
-    /// Returns the hash of a case as "0x" and 16 digits. If an assignment fails, the hash also covers the text of all
-    /// assignments.
+    /// Returns the hash of a case as "0x" and 16 hexadecimal digits. If an assignment is refused, the hash also covers
+    /// the text of all assignments.
     std::string hash(std::span<const std::string> assignments);
     const Json& scene() const { return scene_; }
-    /// Returns the files of all cases so far: included scenes, meshes and surfaces, without the scene itself.
+    /// Returns the files that hash() has read so far: included scenes, meshes and surfaces, without the scene itself.
     std::vector<std::filesystem::path> files() const;
 
 private:
     std::uint64_t hash_of_file(const std::filesystem::path& file);
     /// Adds to `hash` the hashes of all files that `json` names: scenes, meshes and surfaces. Names are relative to the
-    /// folder of `of`.
+    /// folder of the file `of`, from which `json` was read.
     void add_files(const Json& json, const std::filesystem::path& of, Hash& hash);
 
     std::filesystem::path file_;

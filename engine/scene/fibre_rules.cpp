@@ -1,4 +1,4 @@
-// Keys of fibres in a scene file, and the body, set and directions that they name.
+// Keys of fibres in a scene file. Resolves the names of their body, set of tetrahedra and array of directions.
 #include <algorithm>
 
 #include "engine/mesh/sets.h"

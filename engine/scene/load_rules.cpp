@@ -6,7 +6,7 @@ namespace skerry {
 namespace {
 
 struct KeysOfLoad : KeysOfKind {
-    bool has_part = false;  // true if the load acts on a part of a body
+    bool has_part = false;  // true if the load acts on chosen nodes or faces of a body
 };
 
 KeysOfLoad keys_of_load(LoadKind kind) {

@@ -16,7 +16,7 @@ struct Built {
     const World& world;
     const std::vector<BodyHandle>& bodies;
     const std::vector<ColliderHandle>& colliders;
-    const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
+    const std::vector<std::vector<AttachmentHandle>>& pins;  // pins of each body, indexed like `bodies`
     const std::vector<JointHandle>& joints;
     const std::vector<TieHandle>& ties;
     const std::vector<CableHandle>& cables;
@@ -64,7 +64,7 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
             return VolumeProbe{body};
-        case ProbeQuantity::contacts:  // has no series
+        case ProbeQuantity::contacts:  // recorded as Scene::probes, without a series
         case ProbeQuantity::energy:
             break;
     }
@@ -75,7 +75,7 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
 
 namespace {
 
-/// Adds a body with a mesh. If the mesh is invalid and was read from a file, the error names this file.
+/// Adds a body with a mesh. If the world refuses a mesh that was read from a file, the error names this file.
 BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const BodySettings& settings, World& world) {
     const Mesh& mesh = plan.meshes[body.mesh];
     try {
@@ -92,7 +92,7 @@ BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const Body
     }
 }
 
-/// Gives objects of a world the names of their plans.
+/// Gives the objects of a world the names of their entries in `plans`, which has the same order.
 template <class HandleType>
 void name_objects(World& world, const std::vector<HandleType>& objects, const auto& plans) {
     for (std::size_t i = 0; i < objects.size(); ++i) name_object(world, objects[i], plans[i].name);
@@ -120,7 +120,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         materials.push_back(called_at(top.key("materials").key(name),
                                       [&, &settings = material] { return world.add_material(settings); }));
     std::vector<BodyHandle> bodies;
-    std::vector<std::vector<AttachmentHandle>> pins;  // indexed by body
+    std::vector<std::vector<AttachmentHandle>> pins;  // pins of each body, indexed like `bodies`
     std::vector<ColliderHandle> colliders;
     for (const BodyPlan& body : plan.bodies) {
         BodySettings settings = body.settings;
@@ -222,7 +222,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
 
 std::vector<BodyHandle> bodies_in_order(const World& world) {
     std::vector<BodyHandle> bodies = world.bodies();
-    std::ranges::sort(bodies, {}, &BodyHandle::slot);  // without removals, slots are numbered in the order added
+    std::ranges::sort(bodies, {}, &BodyHandle::slot);  // if none was removed, slots ascend in the order of adding
     return bodies;
 }
 

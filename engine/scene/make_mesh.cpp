@@ -12,26 +12,27 @@ namespace skerry {
 
 namespace {
 
-/// Number of cells of a refined shape.
+/// Number of cells of a shape after `refine` doublings, or after -refine halvings if `refine` is negative.
 int refined(int cells, int refine) {
     return refine >= 0 ? cells << refine : cells >> -refine;
 }
 
-/// Number of elements across a refined round shape. The shape rounds odd numbers up to even ones.
+/// Number of elements across a round shape after refinement. Odd numbers are first rounded up to even ones, as the
+/// meshes of round shapes do.
 int refined_resolution(int resolution, int refine) {
     return refine == 0 ? resolution : refined(resolution + resolution % 2, refine);
 }
 
-/// Fills a surface, or the surface of a mesh, in the unit of the file. `doublings`: number of times that the length
-/// `edge` of the edges is doubled.
+/// Fills the surface in a file, or the surface of the mesh in a file, with tetrahedra in the length unit of the file.
+/// The edges are 2^doublings times `edge`, which must be given if `doublings` is positive.
 Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int doublings, const MeshEntry& entry,
                std::vector<std::string>& notes, const SurfaceFilling& filling) {
     mesh::FillSettings settings{.edge = edge, .cavities = entry.cavities, .python = filling.python};
     settings.tolerance = entry.tolerance.value_or(settings.tolerance);
     if (doublings > 0) {
         settings.edge = std::ldexp(*edge, doublings);
-        // Largest tolerance of a coarser filling. The tolerance grows with the square of the size of the triangles, as
-        // the distance between flat triangles and a curved surface does.
+        // Largest tolerance of a coarser filling, as a fraction of the diagonal of the bounding box. The tolerance
+        // grows with the square of the edge length, as the distance between flat triangles and a curved surface does.
         constexpr Real most = 0.1;
         settings.tolerance =
             std::min(std::ldexp(settings.tolerance, 2 * doublings), std::max(settings.tolerance, most));
@@ -44,12 +45,12 @@ Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int 
     return mesh;
 }
 
-/// The mesh of a file, or of a filled surface, in the unit of the file. It is coarser than in the file if the entry
-/// requests this, but not finer.
+/// The mesh in a file, or of a filled surface, in the length unit of the file. If `refine` is negative, the mesh is
+/// made coarser by a new filling. Positive refinement is left to make_mesh().
 Mesh make_from_file(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
                     const SurfaceFilling& filling) {
-    // The surface is filled in the units of its file and scaled afterwards, so that scenes of any scale share the mesh
-    // in the cache.
+    // The edge length is converted to the unit of the file. Surfaces are filled in this unit and scaled afterwards, so
+    // that scenes with different scales share the mesh in the cache.
     std::optional<Real> edge;
     if (entry.edge) edge = *entry.edge / entry.scale;
     const std::filesystem::path& file = (entry.file ? entry.file : entry.surface)->path;

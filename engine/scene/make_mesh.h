@@ -15,7 +15,7 @@ struct SurfaceFilling {
 };
 
 /// Makes the mesh of an entry, with its scale and refinement. `rigid`: true if the mesh may be a surface without
-/// tetrahedra. `notes`: gets remarks about the mesh file. Throws SceneError.
+/// tetrahedra. Remarks about the mesh file are appended to `notes`. Throws SceneError.
 PlannedMesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
                       const SurfaceFilling& filling);
 

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Number of times that the edges of a mesh can be made twice as long.
+/// Number of times that a mesh can be made with edges twice as long; its numbers of cells must stay whole.
 int halvings_of(const MeshEntry& mesh) {
     const auto of_cells = [](int cells) { return std::countr_zero(static_cast<unsigned>(cells)); };
     if (mesh.box) {
@@ -17,7 +17,7 @@ int halvings_of(const MeshEntry& mesh) {
         return std::min({of_cells(cells[0]), of_cells(cells[1]), of_cells(cells[2])});
     }
     if (mesh.table) return of_cells(mesh.table->cells_per_leg);
-    // Round shapes have an even number of elements across, because odd numbers are rounded up.
+    // Odd numbers of elements across a round shape are rounded up. All numbers must stay even, which costs one halving.
     const auto of_round = [&](int resolution) { return of_cells(resolution + resolution % 2) - 1; };
     if (mesh.ball) return of_round(mesh.ball->resolution);
     if (mesh.cylinder) return of_round(mesh.cylinder->resolution);
@@ -26,7 +26,8 @@ int halvings_of(const MeshEntry& mesh) {
     return most_refinements;
 }
 
-/// Name and value of the numbers of cells of a mesh, for messages. Surfaces and files have none.
+/// Name and value of the numbers of cells of a mesh, for messages. Must not be called for surfaces and files, which
+/// have none.
 std::string numbers_of(const MeshEntry& mesh) {
     if (mesh.box) {
         const std::array<int, 3>& cells = mesh.box->cells;
@@ -42,16 +43,16 @@ std::string numbers_of(const MeshEntry& mesh) {
     return "resolution " + std::to_string(resolution);
 }
 
-/// Finds the entries of a scene that name parts of the mesh of a body.
+/// Finds the entries of a scene that name nodes, sets or other parts of the mesh of a body.
 class NamedParts {
 public:
     NamedParts(const SceneFile& scene, std::size_t number) : scene_(scene), body_(scene.bodies[number]) {
         name_ = body_.name.empty() ? "body_" + std::to_string(number) : body_.name;
     }
 
-    /// Place of the first list of node numbers; empty if there is none.
+    /// Place in the scene of the first list of node numbers of the mesh; empty if there is none.
     std::optional<Place> first_nodes() { return first(true); }
-    /// Place of the first node numbers, set, label or array that is defined by the mesh file.
+    /// Place in the scene of the first entry that uses node numbers, a set, a label or an array of the mesh file.
     std::optional<Place> first_of_file() { return first(false); }
 
 private:
@@ -81,7 +82,7 @@ private:
         return found_;
     }
 
-    /// True for the name of the body or of one of its copies, which end in a number.
+    /// True for the name of the body. If the body has copies: true for the names of the copies, which end in a number.
     bool is_name(const std::string& name) const {
         if (!body_.repeat && body_.positions.empty()) return name == name_;
         return name.starts_with(name_ + "_") &&
@@ -110,8 +111,8 @@ private:
     std::optional<Place> found_;
 };
 
-/// Reason why a mesh cannot have a refinement; empty if it can. `parts`: named parts of its body; nullptr for a
-/// collider. `rigid`: true for rigid bodies and colliders.
+/// Reason why a mesh cannot have the value `refine`; empty if it can. `parts`: uses of parts of the mesh of a body;
+/// nullptr for a collider. `rigid`: true for rigid bodies and colliders.
 std::string why_not(const MeshEntry& mesh, int refine, bool rigid, NamedParts* parts) {
     if (std::abs(refine) > most_refinements)
         return "values are limited to " + std::to_string(most_refinements) + " refinements";

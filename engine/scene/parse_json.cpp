@@ -75,7 +75,7 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            // an unfinished item is already counted in the size of its list
+            // a list that contains the next open level already counts it as an item
             const std::size_t begun = i + 1 < open_.size() ? 1 : 0;
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);

@@ -32,7 +32,8 @@ public:
     const std::filesystem::path& folder() const { return folder_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Passes on the error of an inner function that does not know the file and the key, with this location in front.
+    /// Throws the error of an inner function that knows neither the file nor the key, with this location added in
+    /// front.
     [[noreturn]] void refuse_inner(const SceneError& inner) const;
 
 private:

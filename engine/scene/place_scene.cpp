@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-/// Moves the entries of an included scene, and puts its name in front of all names.
+/// Moves the entries of an included scene, and puts the name of the include in front of all names.
 class Placing {
 public:
     explicit Placing(const IncludeEntry& include)
@@ -79,7 +79,7 @@ private:
     void rename(std::optional<std::string>& name) const {
         if (name) rename(*name);
     }
-    /// Gives entries without a name their default names, and renames all.
+    /// Gives unnamed entries their default names, and then puts the name of the include in front of all names.
     template <class Entry>
     void number(std::vector<Entry>& entries, const char* kind) const {
         for (std::size_t i = 0; i < entries.size(); ++i) {

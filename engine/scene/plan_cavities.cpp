@@ -1,4 +1,4 @@
-// Resolves the names of bodies and cavities that cavities and pipes use, and adds them to a world.
+// Resolves the names of bodies and cavities in cavities and pipes, and adds cavities and pipes to a world.
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {

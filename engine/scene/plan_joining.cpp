@@ -1,4 +1,4 @@
-// Resolves the names in ties, cables, springs and their anchors, and converts positions of anchors to the world.
+// Resolves the names in ties, cables, springs and their anchors, and converts points of anchors to world coordinates.
 #include "engine/scene/scene_plan.h"
 #include "systems/geometry/rotation.h"
 

@@ -1,4 +1,4 @@
-// Resolves the names of bodies, colliders and joints that probes use.
+// Resolves the names of the bodies, colliders, joints and other objects that probes use.
 #include <algorithm>
 
 #include "engine/scene/scene_plan.h"
@@ -7,7 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// Finds the body or collider that exerts a force. Throws SceneError if a body and a collider both have the name.
+/// Finds the body or collider that exerts the measured force; a force on a collider is exerted by bodies only. Throws
+/// SceneError if none has the name, or if a body and a collider have it.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
     const Place place = entry.place.key("by");
     const auto index_in = [&](const std::vector<std::string_view>& names) -> std::optional<std::size_t> {
@@ -41,8 +42,8 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
         lower = lower.cwiseMin(node);
         upper = upper.cwiseMax(node);
     }
-    // Largest distance of a probe from the body, as a fraction of the diagonal of the bounding box. It allows for
-    // rounding and for the facets of round shapes.
+    // Largest distance of the point of a probe from the mesh, as a fraction of the diagonal of the bounding box. It
+    // allows for rounding and for flat facets of the meshes of round shapes.
     constexpr Real reach = 0.01;
     const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
     if (found) return *found;

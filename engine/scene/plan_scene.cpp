@@ -58,7 +58,7 @@ PinPlan plan_pin(const PinEntry& entry, const PlannedMesh& mesh, const std::map<
             .place = entry.place};
 }
 
-/// The values of an entry that has keys of friction and restitution.
+/// Friction and restitution of an entry of a scene file.
 SurfaceSettings surface_of(const auto& entry) {
     return {.friction = entry.friction,
             .static_friction = entry.static_friction,
@@ -116,7 +116,7 @@ std::size_t find_material(const ScenePlan& plan, const std::string& wanted, cons
     return static_cast<std::size_t>(found - names.begin());
 }
 
-/// Writes the materials of labels and sets to a planned body. A whole number is a label, any other key is a set.
+/// Resolves the key `materials` of a body: a key that is a whole number is a label, any other key is the name of a set.
 void plan_materials(const BodyEntry& entry, const Mesh& mesh, const ScenePlan& plan, BodyPlan& body) {
     const std::map<int, std::size_t> labels = mesh::count_labels(mesh);
     for (const auto& [key, name] : entry.materials.items) {
@@ -138,20 +138,20 @@ void plan_materials(const BodyEntry& entry, const Mesh& mesh, const ScenePlan& p
     }
 }
 
-/// Names and mesh files of the bodies that have been planned so far.
+/// Names, mesh files and visual surfaces of the bodies that have been planned so far.
 struct PlannedBodies {
     std::set<std::string> names;
-    // Index in ScenePlan::meshes of each mesh file that was read and of each surface that was filled, by the members of
-    // the entry. The first two flags: the file is a surface to fill; the file is read for a rigid body.
+    // Index in ScenePlan::meshes of each mesh file or filled surface. Key: file; true if it is a surface to fill; true
+    // if it is a mesh file of a rigid body; `scale`, `edge`, `tolerance`, `cavities` and `refine` of the MeshEntry.
     std::map<std::tuple<std::filesystem::path, bool, bool, Real, std::optional<Real>, std::optional<Real>, bool, int>,
              std::size_t>
         mesh_of_file;
-    // Visual surfaces by path and scale of their file, and by index of their mesh in ScenePlan::meshes.
+    // Visual surfaces. Key: path and scale of the file, and index of the mesh in ScenePlan::meshes.
     std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
     const SurfaceFilling& filling;
 };
 
-/// Returns the index of the body's mesh in plan.meshes. Each mesh file is read only once.
+/// Returns the index of the body's mesh in plan.meshes. Bodies with equal entries for a mesh file share one mesh.
 std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t next = plan.meshes.size();
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
@@ -172,7 +172,7 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     return next;
 }
 
-/// Returns the visual surface of an entry, bound to its mesh. Entries with the same surface and mesh share it.
+/// Returns the visual surface of an entry, bound to its mesh. Entries with equal file, scale and mesh share one.
 std::shared_ptr<const BoundVisual> plan_visual(const BodyEntry& entry, const std::string& name, std::size_t of_plan,
                                                PlannedBodies& so_far, ScenePlan& plan) {
     const VisualEntry& visual = *entry.visual;
@@ -267,7 +267,7 @@ PairPlan plan_pair(const PairEntry& entry, const ScenePlan& plan) {
             .place = entry.place};
 }
 
-/// Adds a pair to a plan that contains all materials.
+/// Adds a pair of materials, and refuses a second entry for the same two. plan.materials must be complete.
 void plan_pair_once(const PairEntry& entry, ScenePlan& plan) {
     const PairPlan pair = plan_pair(entry, plan);
     const auto is_same = [&](const PairPlan& other) {

@@ -1,4 +1,4 @@
-// Resolves the sets of bodies, and the parts of bodies that entries of a scene file name.
+// Finds the nodes, faces and tetrahedra of the sets of bodies, and of the parts of bodies that entries of a scene name.
 #include <algorithm>
 #include <set>
 #include <span>
@@ -63,7 +63,8 @@ std::vector<std::array<Index, 3>> surface_faces(const Mesh& mesh) {
     return surface;
 }
 
-/// Set with which the conditions of an entry begin: the union of other sets, the tetrahedra of a label, or all nodes.
+/// Set that the other conditions of an entry restrict: the union of the sets that it names, or all nodes. With a label:
+/// the tetrahedra with this label in this union, or in the whole mesh.
 MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set;
     for (const std::string& name : entry.set.items) {

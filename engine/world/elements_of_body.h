@@ -26,11 +26,11 @@ public:
     ElementCover cover;
     std::span<const Vec3> position;  // positions of the nodes that `elements` refers to [m]
     Index first_node = 0;            // first node of the body in `position`
-    Mat3 built = Mat3::Identity();   // rotation of the elements at rest against the mesh
+    Mat3 built = Mat3::Identity();   // rotation of the elements at rest relative to the mesh
 
     /// Rotates tensors from the frame of the elements to world axes.
     void turn(std::span<Mat3> values) const;
-    /// Stress and strain at the nodes of RecoveryPlan::nodes, in the frame of the elements.
+    /// Stress and strain at the given nodes of the body, in their order, in the frame of the elements.
     NodeFields node_fields(std::span<const Index> nodes) const;
 
 private:

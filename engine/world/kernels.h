@@ -8,8 +8,9 @@
 
 namespace skerry {
 
-/// Returns the kernel set with the name `wanted`. If `wanted` is empty, returns the last set that runs on this CPU. If
-/// no set of this name runs here, throws SceneError with a list of the available sets.
+/// Returns the kernel set with the name `wanted`. If `wanted` is empty, returns the last of the `sets` that runs on
+/// this CPU, which is the most advanced one. If no set named `wanted` runs here, throws SceneError with a list of the
+/// available sets.
 const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view wanted);
 
 /// Returns the kernels for the instruction set that the environment variable SKERRY_INSTRUCTION_SET names, or else for

@@ -5,17 +5,16 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Reader of PLY files, text and binary. It reads the properties x, y and z of the element "vertex",
-// its texture coordinates, and the list
-// vertex_indices (or vertex_index) of the element "face". All other elements and properties are skipped. Format: G.
-// Turk, "The PLY Polygon File Format", 1994.
+// Reader of PLY files, text and binary. It reads the positions and texture coordinates of the element "vertex", and the
+// list vertex_indices (or vertex_index) of the element "face". All other elements and properties are skipped. Format:
+// G. Turk, "The PLY Polygon File Format", 1994.
 namespace skerry::mesh {
 namespace {
 
 struct PlyProperty {
     std::string name;
     NumberType type;
-    std::optional<NumberType> count_type;  // type of the number of entries, for a list
+    std::optional<NumberType> count_type;  // for a list: type of its entry count, which precedes the entries
 };
 
 struct PlyElement {
@@ -100,7 +99,7 @@ private:
 
     void read_element(const PlyElement& element) {
         reader_.set_section(element.name);
-        std::size_t bytes = 0;  // smallest size of a row
+        std::size_t bytes = 0;  // least bytes that a row needs in the file: a text value takes a digit and a separator
         for (const PlyProperty& property : element.properties)
             bytes += binary_ ? (property.count_type ? *property.count_type : property.type).size : 2;
         const std::size_t rows = reader_.checked_count(element.count, std::max<std::size_t>(bytes, 1), "count");
@@ -131,7 +130,7 @@ private:
         if (element.name == "tristrips" && rows > 0) mesh_.others["triangle strips"] += rows;
     }
 
-    /// 0 or 1 for the first or second texture coordinate of a vertex, 2 for other properties.
+    /// Returns 0 or 1 if `name` is the first or second texture coordinate of a vertex, and 2 if it is another property.
     static std::size_t texture_axis(std::string_view name) {
         constexpr std::array<std::string_view, 6> names{"s", "u", "texture_u", "t", "v", "texture_v"};
         const auto found = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
@@ -166,7 +165,7 @@ private:
     bool binary_ = false;
     std::int64_t node_count_ = 0;
     std::vector<PlyElement> elements_;
-    std::vector<Index> corners_;  // node numbers of the face that is being read
+    std::vector<Index> corners_;  // node indices of the face that is being read
     RawMesh mesh_;
 };
 

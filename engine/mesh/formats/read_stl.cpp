@@ -70,8 +70,8 @@ void read_ascii(FileReader& reader, SurfaceMesh& surface) {
 
 RawMesh read_stl(FileReader& reader) {
     SurfaceMesh surface;
-    // The header of a binary file may begin with "solid", like a text file. Therefore the file size decides: the size
-    // of a binary file follows exactly from its number of triangles.
+    // The header of a binary file may begin with "solid", like a text file. Therefore the file size decides: a binary
+    // file with n triangles has exactly 84 + 50 n bytes.
     const std::string_view bytes = reader.rest();
     if (bytes.empty()) reader.complain({}, "an empty file", "an STL file", "export the surface again");
     bool binary = false;

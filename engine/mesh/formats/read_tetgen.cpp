@@ -6,7 +6,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Returns the words of the next line that contains words outside of comments. Throws SceneError at the end of the
+/// Returns the words of the next line that is neither empty nor only a comment. Throws SceneError at the end of the
 /// file.
 const std::vector<std::string_view>& node_row_words(FileReader& reader, const char* expected) {
     while (!reader.at_end()) {
@@ -46,10 +46,12 @@ void require_words(const FileReader& reader, std::size_t found, std::size_t leas
                 " numbers: " + meaning);
 }
 
-/// Name of the set of all rows with the marker 0, which is deleted after reading.
+/// Name of a temporary set that collects the nodes or faces with the marker 0, which means "not marked". The set is
+/// deleted after reading.
 constexpr const char* no_marker = "";
 
-/// Returns the set of the nodes or faces with a marker.
+/// Returns the set for the marker `word`, and adds it to the mesh if it is new. `kind`: beginning of the name of the
+/// set.
 MeshSet& add_marked(const FileReader& reader, std::string_view word, const char* kind, RawMesh& mesh) {
     const std::int64_t marker = reader.parse_integer(word, "marker");
     return mesh.sets[marker == 0 ? no_marker : kind + std::to_string(marker)];
@@ -86,9 +88,9 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     require_end(reader, "nodes");
 }
 
-/// Position of each node of a row of the file .ele in the order of RawMesh::middle. With its option -o2 TetGen lists
-/// the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its tables edge2ver, orgpivot and
-/// destpivot).
+/// Entry a is the place of node a of a .ele row in the order of this engine: four corners, then RawMesh::middle. With
+/// its option -o2 TetGen lists the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its
+/// tables edge2ver, orgpivot and destpivot).
 constexpr std::array<std::size_t, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
@@ -124,7 +126,7 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
     require_end(reader, "tetrahedra");
 }
 
-/// Reads the markers of the file .face.
+/// Adds a set of faces for each marker of the file .face, except marker 0.
 void read_faces(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
     const auto [announced, markers, none, unused] =
         read_header(reader, 2, "a header of up to two numbers: count of faces, count of markers");
@@ -135,8 +137,8 @@ void read_faces(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
     for (std::size_t i = 0; i < count && markers == 1; ++i) {
         reader.set_row("face", i + 1, count);
         const std::vector<std::string_view>& words = node_row_words(reader, "number, nodes and marker of a face");
-        // Further numbers of a row are the neighbouring tetrahedra, which TetGen writes with its option -nn. In a mesh
-        // of second order, three nodes in the middle of edges precede the marker.
+        // In a mesh of second order, the three nodes in the middle of the edges precede the marker. With the option -nn
+        // TetGen writes two neighbouring tetrahedra after it.
         require_words(reader, words.size(), 5, 10, "number, three or six nodes, marker and neighbours of a face");
         std::array<Index, 3> nodes;
         for (std::size_t a = 0; a < 3; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);

@@ -6,8 +6,8 @@
 
 #include "engine/mesh/formats/vtk_cells.h"
 
-// Reader of legacy VTK files. Format: "VTK File Formats", VTK user's guide. File version 5.1 introduced OFFSETS and
-// CONNECTIVITY.
+// Reader of legacy VTK files. Format: "VTK File Formats", VTK user's guide. Since file version 5.1, cells have the
+// separate lists OFFSETS and CONNECTIVITY.
 namespace skerry::mesh {
 namespace {
 
@@ -118,7 +118,7 @@ private:
         return found->type;
     }
 
-    /// Skips the line end between the counts and binary rows.
+    /// Skips the line end between the counts and the rows of binary data. In text files reading skips it anyway.
     void begin_rows() {
         if (binary_) reader_.line();
     }
@@ -147,8 +147,8 @@ private:
         return static_cast<Index>(node);
     }
 
-    /// Reads the nodes of the cells in section CELLS or POLYGONS. In the old form of the file, each cell has its node
-    /// count, followed by its nodes. In the new form, the offsets of all cells come first, then all nodes.
+    /// Reads the nodes of the cells in section CELLS or POLYGONS. Before file version 5.1, each cell has its node
+    /// count, followed by its nodes. Since 5.1, the offsets of all cells come first, then all nodes.
     void read_cells(bool& has_rows) {
         if (!has_points_)
             reader_.complain({}, "cells before the points", "the section POINTS before the sections of cells");
@@ -165,7 +165,8 @@ private:
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = reader_.integer(type, "node count");
-            // Number of integers of the section that follow the counts and nodes read so far.
+            // Number of integers that the section has left, according to `size` in its header. So far c + 1 node counts
+            // and all nodes of the cells before have been read.
             const std::size_t left = size - std::min(size, cells_.offset.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain(
@@ -247,8 +248,9 @@ private:
         cells_.offset.assign(1, 0);
     }
 
-    /// Reads the data arrays of points or cells, and stores labels and whole numbers. Returns false at the end of the
-    /// file and at unknown content; the rest of the file is not needed for a mesh.
+    /// Reads the data arrays of points or cells, and stores labels, whole numbers, and vectors of cells. Returns true
+    /// if another section of data follows. Returns false if reading can stop: at the end of the file, or at unknown
+    /// content, after which no mesh data follow.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
         const std::size_t rows = of_cells ? cells_.type.size() : mesh_.nodes.size();
@@ -276,7 +278,7 @@ private:
         if (keyword == "FIELD") return read_field_data(rows, of_cells);
         if (keyword == "COLOR_SCALARS" || keyword == "LOOKUP_TABLE") {
             const std::size_t count = read_count("count", 1);
-            // a colour component is one byte in a binary file and a fraction in a text file
+            // Skips bytes in a binary file and words in a text file, where a colour component is a fraction.
             return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
                               {NumberKind::uint8, 1});
         }
@@ -296,8 +298,7 @@ private:
         return false;
     }
 
-    /// Reads the rest of an array after "SCALARS name type". The number of components and the colour table are
-    /// optional.
+    /// Reads an array whose "SCALARS name type" has been read. A component count and a LOOKUP_TABLE line may come next.
     bool read_scalars(const std::string& name, std::size_t rows, bool of_cells, const NumberType& type) {
         std::size_t components = 1;
         if (const std::string_view rest = reader_.line(); !rest.empty())
@@ -315,7 +316,7 @@ private:
         for (std::size_t i = 0; i < arrays; ++i) {
             reader_.set_row("array", i + 1, arrays);
             const std::string name(reader_.word("the name of the array"));
-            if (name == "METADATA") {  // METADATA describes the array before it
+            if (name == "METADATA") {  // METADATA describes the previous array and is not counted in `arrays`
                 skip_metadata();
                 --i;
                 continue;
@@ -343,8 +344,8 @@ private:
         return true;
     }
 
-    /// Stores the array if it is the first array with labels, if it has one whole number per row, or if it has one
-    /// vector per cell; otherwise skips it.
+    /// Stores three kinds of arrays and skips all others: the first array of cell labels, arrays of one whole number
+    /// per row, and arrays of one vector per cell.
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
         const bool labels = of_cells && cells_.label.empty() && is_vtk_label(name);
@@ -353,7 +354,7 @@ private:
         if (components != 1 || (real && !labels)) return skip_rows(rows, components, type);
         std::vector<int> numbers;
         bool whole = true;
-        unsigned bits = 0;  // a binary file packs eight bits into a byte, the first bit of an array being the highest
+        unsigned bits = 0;  // present byte: the first of its eight values is in the highest bit
         for (std::size_t i = 0; i < rows; ++i) {
             reader_.set_row(of_cells ? "cell" : "point", i + 1, rows);
             std::optional<int> number;

@@ -8,8 +8,8 @@
 #include "engine/mesh/formats/vtk_cells.h"
 #include "engine/mesh/formats/vtk_xml.h"
 
-// Reader of VTK XML files with unstructured grids. A general XML parser is not used, because a file with raw appended
-// data is not XML.
+// Reader of VTK XML files with unstructured grids. A general XML parser is not used, because a file with raw binary
+// data in <AppendedData> is not valid XML.
 namespace skerry::mesh {
 namespace {
 
@@ -42,7 +42,7 @@ private:
         const XmlTag file = next_tag(reader_);
         if (file.name != "VTKFile") complain(file, {}, "the tag " + in_quotes(file.name), "<VTKFile ...>");
         read_form(file);
-        std::string section;  // the element inside a piece or grid that contains the present tag
+        std::string section;  // last of Points, Cells, CellData, PointData, FieldData: the section of an array
         while (true) {
             const XmlTag tag = next_tag(reader_);
             if (tag.name == "VTKFile" && !tag.opens) break;
@@ -206,8 +206,8 @@ private:
         }
     }
 
-    /// Appends the arrays of whole numbers of a piece to `all`. `before`: number of points or cells of earlier pieces.
-    /// An array that an earlier piece lacks is ignored.
+    /// Appends the whole numbers of a piece to the arrays of `all` with equal names. `before`: number of points or
+    /// cells of earlier pieces. An array that an earlier piece lacks is ignored, because it would have gaps.
     void take_data(const std::vector<VtkXmlArray>& arrays, std::size_t count, std::size_t before,
                    std::vector<VtkArray>& all) {
         for (const VtkXmlArray& array : arrays) {
@@ -224,8 +224,8 @@ private:
         }
     }
 
-    /// Appends the arrays of vectors of the cells of a piece. `before`: number of cells of earlier pieces. An array
-    /// that an earlier piece lacks is ignored.
+    /// Appends the vectors of the cells of a piece to cells_.vectors. `before`: number of cells of earlier pieces. An
+    /// array that an earlier piece lacks is ignored.
     void take_vectors(const Piece& piece, std::size_t count, std::size_t before) {
         for (const VtkXmlArray& array : piece.cell_data) {
             if (array.tag.value_of("NumberOfComponents", "1") != "3") continue;

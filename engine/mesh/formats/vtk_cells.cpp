@@ -12,7 +12,7 @@ struct CellKind {
     std::int64_t type;
     const char* name;
 };
-// Kinds of cells of VTK that are neither tetrahedra nor triangles of first or second order.
+// VTK cell types that are counted but not read: neither tetrahedra nor triangles of first or second order.
 constexpr const char* curved_triangle = "triangles of third or higher order";
 constexpr CellKind other_kinds[] = {
     {1, "points"},     {2, "points"},         {3, "lines"},           {4, "lines"},           {6, "triangle strips"},
@@ -22,12 +22,13 @@ constexpr CellKind other_kinds[] = {
     {42, "polyhedra"}, {68, "lines"},         {69, curved_triangle},  {70, "quadrilaterals"}, {72, "hexahedra"},
     {73, "prisms"},    {74, "pyramids"},      {76, curved_triangle}};
 
-/// True for tetrahedra of first order (10) and of second order (24, or 71 with ten nodes).
+/// True for tetrahedra of first order (VTK type 10) and of second or higher order (24, 71). The caller checks the
+/// number of nodes.
 bool is_vtk_tetrahedron(std::int64_t type) {
     return type == 10 || type == 24 || type == 71;
 }
 
-/// True for triangles of first order (5) and of second order (22, or 69 with six nodes).
+/// True for triangles of first order (VTK type 5) and of second order (22, or 69 with six nodes).
 bool is_triangle(std::int64_t type, std::size_t nodes) {
     return type == 5 || type == 22 || (type == 69 && nodes == 6);
 }
@@ -72,7 +73,9 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
 
 namespace {
 
-/// Calls add(set, row) for every row of an array that belongs to a set.
+/// Calls add(set, row) for every row of an array with a value other than 0. A flag array (0 and 1) makes one set with
+/// its name; other arrays make one set for each value. An array of different values only numbers its rows and makes no
+/// set.
 void for_each_member(const VtkArray& array, RawMesh& mesh, auto&& add) {
     const std::set<int> values(array.value.begin(), array.value.end());
     const bool is_flag = std::ranges::all_of(values, [](int value) { return value == 0 || value == 1; });
@@ -91,7 +94,7 @@ void take_vtk_sets(const VtkCells& cells, RawMesh& mesh) {
         if (array.value.size() == mesh.nodes.size())
             for_each_member(array, mesh,
                             [](MeshSet& set, std::size_t row) { set.nodes.push_back(static_cast<Index>(row)); });
-    std::vector<Index> number;  // by cell: number of the tetrahedron
+    std::vector<Index> number;  // by cell: index of its tetrahedron in the mesh, or no_index
     Index tetrahedra = 0;
     for (const std::int64_t type : cells.type) number.push_back(is_vtk_tetrahedron(type) ? tetrahedra++ : no_index);
     for (const VtkArray& array : cells.cell_data)

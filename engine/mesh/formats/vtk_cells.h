@@ -1,4 +1,4 @@
-// Cells of VTK files: rules that legacy files and XML files have in common.
+// Cells of VTK files, and the conversion to a mesh that legacy files and XML files share.
 #pragma once
 
 #include <span>
@@ -16,14 +16,15 @@ struct VtkArray {
     std::vector<int> value;
 };
 
-/// Cells of an unstructured grid as in a file. Cell c has the nodes node[offset[c]] to node[offset[c + 1] - 1].
+/// Cells of an unstructured grid in the order of the file. Cell c has the nodes node[offset[c]] to node[offset[c + 1] -
+/// 1].
 struct VtkCells {
     std::vector<std::size_t> offset{0};
     std::vector<Index> node;  // indices into RawMesh::nodes
     std::vector<std::int64_t> type;
     std::vector<int> label;  // label of each cell; empty: no labels
     std::vector<VtkArray> point_data, cell_data;
-    std::map<std::string, std::vector<Vec3>> vectors;  // vectors of the cells; incomplete arrays are ignored
+    std::map<std::string, std::vector<Vec3>> vectors;  // by array name: vectors of cells; incomplete ones are ignored
 };
 
 /// True if cell data of this name are labels.

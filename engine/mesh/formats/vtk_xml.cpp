@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* damaged = "the file is damaged or incomplete; export it again";
 
-/// Returns the place of `text` in the file. Throws SceneError if the file does not contain it after `from`.
+/// Returns the byte offset of the first `text` at or after the offset `from`. Throws SceneError if there is none.
 std::size_t place_of(std::string_view text, std::size_t from, FileReader& reader) {
     const std::size_t found = bytes_of(reader).find(text, from);
     if (found != std::string_view::npos) return found;
@@ -41,14 +41,14 @@ void read_attributes(std::string_view text, XmlTag& tag, const FileReader& reade
     }
 }
 
-/// Bytes of an array, as they are in the file or encoded in base64. Base64 may be padded in the middle, because some
-/// programs encode the header of an array separately.
+/// Reads the bytes of an array in sequence. In the file they are raw or encoded in base64. Base64 may be padded in the
+/// middle, because some programs encode the header of an array separately.
 class ByteSource {
 public:
     ByteSource(std::string_view from, bool base64, const char* field, const FileReader& reader)
         : from_(from), base64_(base64), field_(field), reader_(reader) {}
 
-    /// Largest number of bytes that may follow.
+    /// Upper bound of the bytes not yet taken. With base64 padding the number is smaller.
     std::size_t most_left() const { return base64_ ? ready_.size() + from_.size() / 4 * 3 : from_.size(); }
 
     std::string take(std::size_t count) {
@@ -66,7 +66,7 @@ public:
         ready_.erase(0, count);
         return bytes;
     }
-    /// Throws a SceneError about this array.
+    /// Throws SceneError that names `field` of the array.
     [[noreturn]] void complain(const std::string& found, const std::string& expected) const {
         reader_.complain(field_, found, expected, damaged);
     }
@@ -125,10 +125,11 @@ std::uint64_t read_header(ByteSource& source, const VtkXmlForm& form) {
                             : number_from<std::uint32_t>(bytes.data(), form.foreign_bytes);
 }
 
-/// Reads compressed blocks: their number, the size of a block, the size of the last block if it is shorter, and the
-/// compressed size of each block, followed by the blocks.
+/// Reads and decompresses blocks. The file has four headers: number of blocks, size of a block, size of the last block
+/// (0 if it is complete), and compressed size of each block. The compressed blocks follow. `expected`: decompressed
+/// size in total [bytes].
 std::string read_blocks(ByteSource& source, const VtkXmlForm& form, std::size_t expected) {
-    constexpr std::size_t best_ratio = 1032;  // largest ratio of sizes that zlib reaches
+    constexpr std::size_t best_ratio = 1032;  // largest compression ratio of zlib, to refuse damaged sizes
     const std::uint64_t count = read_header(source, form), size = read_header(source, form),
                         last = read_header(source, form);
     const std::uint64_t whole = count - (last > 0 && count > 0 ? 1 : 0);
@@ -259,7 +260,7 @@ XmlTag next_tag(FileReader& reader) {
         begin = place_of("<", place_of(end, begin, reader) + end.size(), reader);
     }
     reader.go_to(begin);
-    // A quoted value may contain the character that ends a tag.
+    // A quoted value may contain ">". With an odd number of quotes before it, ">" is inside a value.
     std::size_t end = place_of(">", begin, reader);
     while (std::ranges::count(bytes.substr(begin, end - begin), '"') % 2 != 0) end = place_of(">", end + 1, reader);
     std::string_view inner = bytes.substr(begin + 1, end - begin - 1);

@@ -11,23 +11,23 @@
 
 namespace skerry::mesh {
 
-/// A tag of an XML file: <name>, </name> (closes) or <name/> (opens and closes).
+/// A tag of an XML file: <name> (opens), </name> (closes) or <name/> (opens and closes).
 struct XmlTag {
     std::string_view name;
     bool opens = true, closes = false;
     std::vector<std::pair<std::string_view, std::string_view>> attributes;
-    std::size_t place = 0;  // position of the tag in the file [bytes]
-    std::size_t end = 0;    // position after the tag [bytes]
+    std::size_t place = 0;  // offset of the first byte of the tag in the file
+    std::size_t end = 0;    // offset of the first byte after the tag
 
     /// Returns the value of an attribute, or `otherwise` if the tag does not have the attribute.
     std::string_view value_of(std::string_view attribute, std::string_view otherwise = {}) const;
 };
 
-/// Returns the next tag and continues after it. Skips text, comments and processing instructions. Throws SceneError at
-/// the end of the file.
+/// Returns the next tag, and moves the reader to the byte after it. Skips text, comments and processing instructions.
+/// Throws SceneError at the end of the file.
 XmlTag next_tag(FileReader& reader);
 
-/// Bytes of the whole file, independent of the position of the reader.
+/// Bytes of the whole file, including those that were already read.
 std::string_view bytes_of(const FileReader& reader);
 
 /// An array of a VTK XML file.
@@ -37,13 +37,13 @@ struct VtkXmlArray {
     std::string section;    // description of the array for error messages
 };
 
-/// Properties of the file that all its arrays share.
+/// Encoding that all arrays of a file share, from the attributes of <VTKFile> and <AppendedData>.
 struct VtkXmlForm {
-    bool wide_header = false;    // headers have 64 instead of 32 bits
+    bool wide_header = false;    // headers (sizes before the data of an array) have 64 instead of 32 bits
     bool foreign_bytes = false;  // byte order of the file differs from the order of this machine
     bool compressed = false;
     bool has_appended = false, appended_base64 = false;
-    std::string_view appended;  // appended data, up to the end of the file
+    std::string_view appended;  // bytes after the "_" of <AppendedData>; raw: to the end of the file
 };
 
 /// Reads the numbers of an array. Throws SceneError unless the array has exactly `count` numbers. `field` names the

@@ -1,4 +1,4 @@
-// Splits nodes of a mesh so that its tetrahedra are connected by faces, not by nodes alone.
+// Splits nodes of a mesh so that no tetrahedra are connected only by a node.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ struct PartedMesh {
     std::size_t parts = 1;   // 1 plus the increase in the number of connected components
 };
 
-/// Splits nodes at which several fans meet. A fan is a set of tetrahedra around a node, connected by faces that contain
-/// the node. If a node has several fans, each fan except the first gets a new node at the same position. The boundary
-/// then has one ring of triangles at each node and touches itself there. The shape of the tetrahedra is unchanged. Old
-/// nodes keep their indices, and new nodes are appended. An edge that only joins tetrahedra without a common face is
-/// not split if both of its end nodes have a single fan.
+/// Splits nodes at which several fans meet. A fan is a set of tetrahedra at a node that are connected through faces
+/// with this node. If a node has several fans, each fan except the first gets a new node at the same position. The
+/// boundary then has one ring of triangles at each node and touches itself there. The shape of the tetrahedra is
+/// unchanged. Old nodes keep their indices, and new nodes are appended. An edge that only joins tetrahedra without a
+/// common face is not split if both of its end nodes have a single fan.
 PartedMesh part_fans(const Mesh& mesh);
 
 }  // namespace skerry::mesh

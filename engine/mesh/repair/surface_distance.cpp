@@ -15,7 +15,7 @@ Real longest_edge(const std::array<Vec3, 3>& x) {
     return std::max({(x[1] - x[0]).norm(), (x[2] - x[1]).norm(), (x[0] - x[2]).norm()});
 }
 
-/// Largest and mean distance of the points of one surface to the nearest point of the other surface [m].
+/// Largest and mean distance from the points of one surface to the other surface [m].
 struct OneWay {
     Real largest = 0, mean = 0;
 };
@@ -24,7 +24,8 @@ OneWay distance_of(const SurfaceMesh& from, const SurfaceMesh& to) {
     constexpr Real parts_of_mean_edge = 8;
     // largest number of intervals per edge; it gives at most 2,145 sample points per triangle
     constexpr int most_parts = 64;
-    // A surface with more triangles has fewer points per triangle, about this number of points in total.
+    // Upper bound of the number of sample points of a surface, approximately. A surface with many triangles gets fewer
+    // points per triangle.
     constexpr Real most_points = 3e6;
     const TriangleTree tree(to);
     const Real mean = mean_edge(from), area = area_of(from);

@@ -1,4 +1,4 @@
-// Sizes of triangle surfaces.
+// Edge lengths, area, volume and extent of triangle surfaces.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace skerry::mesh {
 
-/// Corners of a triangle, given by its nodes or by its row [m].
+/// Positions of the corners of a triangle, given by its nodes or by its index in surface.triangles [m].
 std::array<Vec3, 3> corners(const SurfaceMesh& surface, const std::array<Index, 3>& triangle);
 inline std::array<Vec3, 3> corners_of(const SurfaceMesh& surface, Index triangle) {
     return corners(surface, surface.triangles[static_cast<std::size_t>(triangle)]);
@@ -20,8 +20,8 @@ Real mean_edge(const SurfaceMesh& surface);
 Real area_of(const SurfaceMesh& surface);
 
 /// Volume inside a closed surface by the divergence theorem, negative if its triangles are clockwise as seen from
-/// outside [m^3]. Positions are measured from a point of the surface, so that the rounding error depends on the size of
-/// the surface and not on its position.
+/// outside [m^3]. Positions are measured from a point of the surface, so that the rounding error does not grow with the
+/// distance of the surface from the origin.
 Real volume_inside(const SurfaceMesh& surface);
 
 /// Length of the diagonal of the bounding box of the nodes [m].

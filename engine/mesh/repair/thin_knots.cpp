@@ -21,13 +21,13 @@ using Corners = std::array<Vec3, 3>;
 // Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller increase does
 // not justify moving the surface.
 constexpr Real least_gain = 1.1;
-// Largest distance of a sample point from the other surface, as a fraction of the tolerance. The rest of the tolerance
-// is a margin for the surface between the sample points.
+// Largest allowed distance of sample points of the old surface from the new one and of the new from the old, as a
+// fraction of the tolerance. The rest of the tolerance is a margin for the surface between the sample points.
 constexpr Real share_of_tolerance = 0.8;
-// Cosine of 60 degrees, the largest angle by which a change may rotate the normal of a triangle.
+// Smallest cosine of the angle by which a change may rotate the normal of a triangle (60 degrees).
 constexpr Real least_turn = 0.5;
-// A flat triangle has no meaningful normal. A triangle that replaces it is compared with the mean normal of the removed
-// triangles. This is the smallest allowed cosine between the two normals.
+// A flat triangle has no meaningful normal. The normal of a triangle that replaces it is therefore compared with the
+// mean normal of all removed triangles. This is the smallest allowed cosine between the two normals.
 constexpr Real least_turn_of_flat = 0.2;
 // Number of intervals per edge of a triangle. It gives 15 sample points per triangle, at which distances are measured.
 constexpr int parts = 4;
@@ -36,7 +36,7 @@ Vec3 area_vector(const Corners& x) {
     return (x[1] - x[0]).cross(x[2] - x[0]);
 }
 
-/// Smallest altitude of a triangle: twice the area over the longest edge [m].
+/// Smallest altitude of a triangle: twice its area divided by its longest edge [m].
 Real altitude_of(const Corners& x) {
     const Real longest =
         std::max({(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()});
@@ -100,7 +100,7 @@ private:
         samples_.emplace_back();
     }
 
-    /// Adds a triangle to the list of flat triangles if its altitude is below settings.altitude.
+    /// Adds a triangle to flat_ if it is not removed and its altitude is below settings_.altitude.
     void ask(Index t) {
         const Real altitude = altitude_of(corners(triangle(t)));
         if (alive_[static_cast<std::size_t>(t)] && altitude < settings_.altitude) flat_.emplace(altitude, t);
@@ -142,8 +142,8 @@ private:
         const std::vector<Index> sides = triangles_with(a, b), near_a = neighbours(a), near_b = neighbours(b);
         std::vector<Index> common;
         std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
-        // The link condition preserves the topology. A surface with the topology of a tetrahedron is the smallest
-        // closed surface, so none of its edges is collapsed.
+        // Link condition: a and b must have exactly two common neighbours, else the collapse changes the topology. In
+        // the surface of a tetrahedron, the smallest closed surface, both have three neighbours; it is not collapsed.
         if (sides.size() != 2 || common.size() != 2 || near_a.size() + near_b.size() <= 6) return std::nullopt;
         Change change;
         change.position = (1 - place) * node(a) + place * node(b);
@@ -172,7 +172,8 @@ private:
             apex[s] = *std::find_if(triangle(sides[s]).begin(), triangle(sides[s]).end(),
                                     [&](Index n) { return n != a && n != b; });
         if (apex[0] == apex[1] || !triangles_with(apex[0], apex[1]).empty()) return std::nullopt;
-        // Each new triangle keeps one end of the flipped edge. The other end is replaced by the opposite apex.
+        // Each new triangle is an old one in which an end of the flipped edge is replaced by the apex of the other old
+        // triangle.
         for (std::size_t s = 0; s < 2; ++s) {
             Triangle made = triangle(sides[s]);
             std::replace(made.begin(), made.end(), next_after(made, apex[s]), apex[1 - s]);
@@ -187,8 +188,8 @@ private:
         return no_index;
     }
 
-    /// Stores in the change the smallest altitude of its new triangles. Returns nothing if this altitude is hardly
-    /// larger than the smallest altitude of the removed triangles.
+    /// Stores in the change the smallest altitude of its new triangles. Returns nullopt unless this altitude exceeds
+    /// the smallest altitude of the removed triangles by the factor least_gain.
     std::optional<Change> finished(Change change) const {
         Real before = infinity;
         for (const Index t : change.gone) before = std::min(before, altitude_of(corners(triangle(t))));
@@ -280,9 +281,10 @@ private:
     KnotSettings settings_;
     TriangleTree original_;
     std::vector<Vec3> nodes_;
-    std::vector<Triangle> triangles_;  // all triangles of the surface, including removed ones
+    std::vector<Triangle> triangles_;  // all triangles, including removed ones, for which alive_ is false
     std::vector<bool> alive_;
-    // Sample points of the old surface, sorted by the triangle of the new surface that is nearest to each point.
+    // Sample points of the original surface. Each is in the list of the triangle of the changed surface that is nearest
+    // to it.
     std::vector<std::vector<Vec3>> samples_;
     std::vector<std::vector<Index>> around_;  // numbers of the triangles at each node
     // Pairs (altitude, triangle number) of all flat triangles, flattest first. Equally flat triangles are ordered by

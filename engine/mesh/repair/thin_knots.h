@@ -1,5 +1,5 @@
-// Removes needles and caps (degenerate triangles) from a surface, because a tetrahedron behind such a triangle is
-// hardly thicker than the triangle.
+// Removes needles and caps (degenerate triangles) from a surface, because a tetrahedron with such a face is hardly
+// thicker than the altitude of the face.
 #pragma once
 
 #include "skerry/mesh.h"
@@ -17,8 +17,8 @@ struct ThinnedSurface {
 };
 
 /// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips one of its edges.
-/// It chooses the change that makes the smallest altitude of the surrounding triangles largest. Triangles that no
-/// change improves are left, and the surface is unchanged elsewhere. Every change preserves the topology (link
+/// Of all possible changes it applies the one that maximises the smallest altitude of the changed triangles. Triangles
+/// that no change improves are left, and the surface is unchanged elsewhere. Every change preserves the topology (link
 /// condition: Dey, Edelsbrunner, Guha, Nekhayev, Topology preserving edge contraction, 1999) and the orientation of
 /// triangles. The old and the new surface stay within the tolerance of each other. The surface must be closed, with two
 /// triangles at every edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness

@@ -11,28 +11,31 @@ namespace skerry::mesh {
 /// The triangle that is nearest to a point, and the nearest point of this triangle.
 struct NearestTriangle {
     Index triangle = no_index;
-    std::array<Real, 3> weight{};      // barycentric weights of the corners
+    std::array<Real, 3> weight{};      // barycentric weights of the nearest point
     Real distance_squared = infinity;  // [m^2]
 };
 
-/// A surface that does not change, with a bounding volume tree over its triangles.
+/// A copy of a surface, with a bounding volume hierarchy over its triangles.
 class TriangleTree {
 public:
     /// The surface must have at least one triangle.
     explicit TriangleTree(SurfaceMesh surface);
 
-    /// Exact squared distance from the point to the nearest triangle [m^2]. Returns `limit` if no triangle is nearer.
+    /// Exact squared distance from the point to the nearest triangle [m^2]. Returns `limit`, also a squared distance,
+    /// if no triangle is nearer.
     Real distance_squared(const Vec3& point, Real limit = infinity) const {
         return nearest(point, limit).distance_squared;
     }
-    /// Nearest triangle. If none is nearer than the root of `limit` [m^2], `triangle` is no_index and
-    /// `distance_squared` is `limit`.
+    /// Nearest triangle. `limit`: squared distance up to which triangles are searched [m^2]. If no triangle is nearer,
+    /// `triangle` is no_index and `distance_squared` is `limit`.
     NearestTriangle nearest(const Vec3& point, Real limit = infinity) const;
-    /// Nearest of the triangles whose normal is within 90 degrees of `facing` and that the point is in front of.
+    /// Nearest of the triangles that have the point in front of them and a normal within 90 degrees of `facing`.
+    /// `limit`: see nearest().
     NearestTriangle nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const;
 
 private:
-    /// `facing`: see nearest_facing; nullptr: all triangles.
+    /// Improves `nearest` by the triangles under row `row` of bvh_. `facing`: see nearest_facing; nullptr: all
+    /// triangles.
     void search(Index row, const Vec3& point, const Vec3* facing, NearestTriangle& nearest) const;
     bool faces(Index triangle, const Vec3& point, const Vec3& facing) const;
 

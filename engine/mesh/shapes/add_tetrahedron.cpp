@@ -23,7 +23,7 @@ void require_count(const char* shape, const char* field, int value) {
 }
 
 void require_fits(const char* shape, const char* field, double tetrahedra) {
-    // The table of triangle corners has four rows per tetrahedron, and row numbers have 32 bits.
+    // Tables of corners and of faces have four entries per tetrahedron, and their indices are 32-bit integers.
     constexpr int most = 0x7fffffff / 4;
     if (!(tetrahedra <= most))
         refuse(shape, field, "a mesh of about " + short_text(tetrahedra, 6) + " elements",

@@ -11,11 +11,11 @@ namespace skerry::mesh {
 /// Appends a tetrahedron with the given nodes, ordered so that its volume is positive.
 void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes);
 
-/// Throw SceneError unless a size is finite and positive, and a count is at least 1.
+/// require_size throws SceneError unless the size is finite and positive, require_count unless the count is at least 1.
 void require_size(const char* shape, const char* field, Real value);
 void require_count(const char* shape, const char* field, int value);
 
-/// Throws SceneError if the corners of this number of tetrahedra (four corners each) exceed a 32-bit index.
+/// Throws SceneError if four times the number of tetrahedra exceeds a 32-bit index (tables have an entry per corner).
 void require_fits(const char* shape, const char* field, double tetrahedra);
 
 }  // namespace skerry::mesh

@@ -8,14 +8,14 @@
 namespace skerry::mesh {
 namespace {
 
-/// Builds a ball from an icosahedron. The icosahedron is divided from its centre into 20 nearly regular tetrahedra, and
-/// each of these into n^3 tetrahedra, where n is the number of shells. Shells are rounded to spheres; shell s has 10
-/// s^2 + 2 nodes. With its six fivefold axes the mesh has no preferred grid direction.
+/// Builds a ball from an icosahedron. Its centre and its 20 faces form 20 nearly regular tetrahedra (sectors). Each
+/// sector is divided into n^3 tetrahedra, where n is the number of shells. The nodes of each shell are moved onto a
+/// sphere; shell s has 10 s^2 + 2 nodes. With its six fivefold axes the mesh has no preferred grid direction.
 class BallBuilder {
 public:
     BallBuilder(Real radius, int shells) : radius_(radius), shells_(shells) {
-        // The poles lie on the z axis, which is a fivefold axis. Therefore a ball stands on a node and is symmetric
-        // about z.
+        // The poles lie on the z axis, which is a fivefold axis. Therefore a ball rests on a node, and a rotation by 72
+        // degrees about z leaves the mesh unchanged.
         const Real height = 1 / std::sqrt(Real{5}), wide = 2 * height, fifth = 2 * std::acos(Real{-1}) / 5;
         corner_[0] = Vec3(0, 0, -1);
         corner_[11] = Vec3(0, 0, 1);
@@ -41,10 +41,11 @@ public:
     }
 
 private:
-    // Barycentric coordinates of a node in its sector, counted in steps towards the three corners of the sector and,
-    // last, the centre.
+    // Barycentric coordinates of a node in its sector, times shells_: those of the three corners, then that of the
+    // centre.
     using Steps = std::array<int, 4>;
-    // Sorted pairs (corner, steps) that identify a node. All sectors that share the node compute the same pairs.
+    // Identifies a node: sorted pairs (corner of the icosahedron, coordinate); corners with the coordinate 0 are (-1,
+    // 0). All sectors that share the node compute the same key.
     using Key = std::array<std::pair<int, int>, 3>;
 
     Index node(const std::array<int, 3>& sector, const Steps& steps) {
@@ -55,7 +56,8 @@ private:
         std::sort(key.begin(), key.end());
         const auto [place, added] = row_.try_emplace(key, static_cast<Index>(mesh_.nodes.size()));
         if (added) {
-            // On an edge of the sector the nodes divide the arc evenly; inside the sector the spacing is nearly even.
+            // Spherical linear interpolation: the nodes on an edge of the sector divide its arc evenly. Inside the
+            // sector the spacing is nearly even.
             Vec3 direction = Vec3::Zero();
             for (const auto& [corner, count] : key)
                 if (count > 0)
@@ -95,8 +97,8 @@ private:
             const Real length =
                 (mesh_.nodes[static_cast<std::size_t>(n[2 * d])] - mesh_.nodes[static_cast<std::size_t>(n[2 * d + 1])])
                     .norm();
-            // Diagonals that should be equal by symmetry differ by rounding errors. With the margin of 1e-9 all sectors
-            // make the same choice.
+            // Diagonals that should be equal by symmetry differ by rounding errors. With the relative margin of 1e-9
+            // all sectors choose the same diagonal.
             if (d == 0 || length < shortest * (1 - 1e-9)) {
                 best = d;
                 shortest = length;
@@ -129,8 +131,8 @@ Mesh ball(Real radius, int resolution) {
 Mesh sphere_picture(Real radius) {
     constexpr int resolution = 8;
     const SurfaceMesh skin = boundary(ball(radius, resolution));
-    // The corners of the icosahedron become the first nodes after the centre. Each of these nodes has five surface
-    // triangles, whereas other surface nodes have six.
+    // The 12 corners of the icosahedron become the first nodes after the centre. They are found by their number of
+    // surface triangles: five, whereas other surface nodes have six.
     std::vector<int> faces(skin.nodes.size(), 0);
     for (const auto& triangle : skin.triangles)
         for (const Index n : triangle) ++faces[static_cast<std::size_t>(n)];

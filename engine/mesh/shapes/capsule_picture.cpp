@@ -6,19 +6,19 @@
 namespace skerry::mesh {
 namespace {
 
-// Number of nodes around the axis, and number of rings of each round end (the rim included).
+// Number of nodes around the axis, and number of rings of nodes of each round end, the rim included but not the pole.
 constexpr int around = 16, caps = 4;
 
 /// Builds a capsule from two round ends and a straight part. The tetrahedra of a round end meet at the centre of its
-/// ball. The straight part consists of wedges between the axis and the surface.
+/// hemisphere. The straight part consists of wedges between the axis and the surface.
 class CapsuleBuilder {
 public:
     CapsuleBuilder(Real radius, Real length) : radius_(radius), half_(length / 2) {}
 
     Mesh build() {
         for (const Real up : {-1.0, 1.0}) mesh_.nodes.emplace_back(0, 0, up * half_);
-        // The first nodes are the pole and four nodes of the rim, for both ends. From their motion a user can see the
-        // rotation of the body.
+        // After the two centres come the pole and four nodes of the rim of each end, so that a user finds nodes that
+        // show the rotation of the body.
         for (const int end : {0, 1}) {
             row_[end][caps][0] = add(end, caps, 0);
             for (int k = 0; k < around; k += around / 4) row_[end][0][k] = add(end, 0, k);
@@ -49,8 +49,8 @@ private:
                 add_tetrahedron(mesh_, {end, row(end, ring, k + 1), row(end, ring + 1, k), row(end, ring + 1, k + 1)});
         }
     }
-    /// Fills a wedge with three tetrahedra. Neighbouring wedges use the same diagonal of their common side, from the
-    /// lower end of the axis to the upper rim.
+    /// Fills a wedge with three tetrahedra. The diagonals of its sides run from the lower end of the axis to the upper
+    /// rim, so that neighbouring wedges match.
     void fill_wedge(int k) {
         const Index a = row(0, 0, k), b = row(0, 0, k + 1), c = row(1, 0, k), d = row(1, 0, k + 1);
         add_tetrahedron(mesh_, {0, a, b, d});

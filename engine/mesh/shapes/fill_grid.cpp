@@ -26,8 +26,8 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
         return row[place];
     };
 
-    // Each order of the three axes gives a path along three edges of the cell, from one end of the diagonal to the
-    // other. The four nodes of the path form a tetrahedron.
+    // Each permutation of the three axes gives a path along three edges of the cell, from one end of its space diagonal
+    // to the other. The four nodes of the path form a tetrahedron.
     constexpr std::array<std::array<std::size_t, 3>, 6> walks{
         {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
     std::array<int, 3> cell;

@@ -16,11 +16,11 @@ using GridLines = std::array<std::vector<Real>, 3>;
 void append_lines(Real from, Real to, int count, std::vector<Real>& lines);
 
 /// Adds six tetrahedra for each cell that `keep` accepts (Kuhn's triangulation). The diagonal of a cell points towards
-/// the middle of the grid. Cells on the same side of the middle planes are divided in the same way, cells on opposite
-/// sides as mirror images, so that a symmetric body moves symmetrically. Nodes that no accepted cell uses are omitted.
-/// The smallest altitude is 0.71 of the edge of a cubic cell. Mirroring every pair of neighbouring cells would suit
-/// linear tetrahedra better, but smoothed elements much worse (docs/methods/elasticity.md 7.3): the edges along
-/// diagonals would then meet in every other node.
+/// the middle of the grid. The eight octants of the grid are divided as mirror images of each other, so that a
+/// symmetric body moves symmetrically. Nodes that no accepted cell uses are omitted. The smallest altitude is 0.71 of
+/// the edge of a cubic cell. Mirroring every pair of neighbouring cells would suit linear tetrahedra better, but
+/// smoothed elements much worse (docs/methods/elasticity.md 7.3): the edges along diagonals would then meet in every
+/// other node.
 Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>& cell)> keep);
 
 }  // namespace skerry::mesh

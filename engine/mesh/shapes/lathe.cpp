@@ -12,14 +12,15 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius, z
 
-// height of a layer divided by ring spacing; this ratio maximises the smallest altitude
+// height of a layer of prisms between two discs, divided by ring spacing; this ratio maximises the smallest altitude of
+// the tetrahedra
 constexpr Real layer_height = 1.0;
-// Smallest change of direction of the outline at which a kink becomes a layer boundary [rad].
+// A kink of the outline becomes a layer boundary if the direction changes by more than this angle [rad].
 constexpr Real sharp_turn = 0.25;
-// Smallest distance between two layer boundaries, divided by ring spacing. A kink that is closer to another boundary
-// does not become a boundary, so it is rounded.
+// Smallest distance between two layer boundaries, divided by ring spacing. A kink closer to a boundary does not become
+// one; the mesh then cuts it off.
 constexpr Real least_layer = 0.6;
-constexpr Real point_radius = 0.3;  // largest radius of an end that closes to a point, divided by ring spacing
+constexpr Real point_radius = 0.3;  // an end narrower than this closes to a point (radius divided by ring spacing)
 
 void check_profile(std::span<const ProfilePoint> profile) {
     if (profile.size() < 2) refuse("lathe", "profile", std::to_string(profile.size()) + " points", "at least 2");
@@ -38,8 +39,8 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
     return (1 - t) * profile[i - 1][0] + t * profile[i][0];
 }
 
-/// Returns the z coordinates of the ends of the outline and of its sharp kinks, in ascending order. If kinks are too
-/// close together for layers between them, only the sharpest kinks are used.
+/// Returns the z coordinates of the ends of the outline and of its sharp kinks, in ascending order. Of kinks closer
+/// together than least_layer * spacing only the sharpest is used.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;
@@ -68,7 +69,7 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
     std::vector<Real> planes{breaks.front()};
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
         Real layers = std::max(Real{1}, std::round((breaks[b + 1] - breaks[b]) / (layer_height * spacing)));
-        // A body with two pointed ends needs at least one disc between these ends.
+        // Between two pointed ends at least one disc is needed, because two points span no volume.
         if (breaks.size() == 2 && pointed(profile.front()) && pointed(profile.back()))
             layers = std::max(layers, Real{2});
         require_fits("lathe", "layers", layers);
@@ -82,8 +83,8 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
 std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing, int most_rings) {
     const Real narrow = point_radius * spacing;
     std::vector<Real> planes = find_planes(profile, spacing);
-    // A pointed end is a single point. Further planes near the end, where the body is equally narrow, would only
-    // produce tiny elements, so they are removed.
+    // A pointed end is a single point. Neighbouring planes with a radius below `narrow` would only produce tiny
+    // elements, so they are removed.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
     while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)

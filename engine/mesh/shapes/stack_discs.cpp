@@ -10,8 +10,9 @@
 namespace skerry::mesh {
 namespace {
 
-// Numbering of the nodes of a disc: the centre, then ring after ring, each counter-clockwise from the x axis. The
-// numbers do not depend on the number of rings, so node n of a disc corresponds to node n of the disc below.
+// Numbering of the nodes of a disc: the centre, then ring after ring, each counter-clockwise from the x axis. The first
+// nodes of all discs have the same numbers for any number of rings, so node n of a disc lies above node n of the disc
+// below.
 int ring_begin(int ring) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
@@ -22,9 +23,10 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The nodes are connected like a
-/// hexagon cut out of the triangular lattice. The colours determine the diagonals of the rectangular side faces (walls)
-/// between neighbouring prisms. All six sectors of the disc are treated alike, so the mesh has no sense of rotation.
+/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The nodes are connected as in a
+/// hexagon cut out of the triangular lattice with the axes p and q, where (p - q) mod 3 is such a colouring. The
+/// colours determine the diagonals of the rectangular side faces (walls) between neighbouring prisms. All six sectors
+/// of the disc are treated alike, so the mesh has no sense of rotation.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
@@ -85,8 +87,8 @@ private:
             for_each_triangle(ring, prism, prism);
         }
         if (below == above) return;
-        // Tetrahedra and pyramids connect the outermost ring of the wider disc with the outermost ring of the narrower
-        // disc.
+        // The wider disc has one more ring. The space between this ring and the rim of the narrower disc gets a
+        // tetrahedron for each triangle with an edge on the ring, and a pyramid for each other triangle.
         const std::size_t wide = below > above ? layer : layer + 1, narrow = below > above ? layer + 1 : layer;
         for_each_triangle(
             shared + 1,

@@ -8,7 +8,7 @@
 namespace skerry::mesh {
 
 /// A disc about the z axis, triangulated by a centre and `rings` equally spaced rings; ring k has 6 k nodes. The
-/// triangles are nearly equilateral. A disc without rings is a point.
+/// triangles are nearly equilateral. A disc with 0 rings is a single node at its centre.
 struct Disc {
     Real z;       // [m]
     Real radius;  // [m]

@@ -8,7 +8,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Number of cells with edges of about `cell` that fit into `length`; at least one. `cell` and `length` are in metres.
+/// Number of cells that divide `length` into parts of about `cell`, at least one. `cell`, `length` [m].
 int cells_in(Real length, Real cell) {
     const Real count = std::round(length / cell);
     require_fits("table", "cells", count);

@@ -5,8 +5,8 @@
 
 namespace skerry::mesh {
 
-/// Adds a fault to those of its kind. The first fault of a kind sets the place. `triangle`, `other`: rows of
-/// `report.cleaned`. Returns the faults of the kind.
+/// Counts a fault of a kind, and returns the entry of the report for this kind. The first fault sets the place and the
+/// triangles of the entry. `triangle`, `other`: indices into report.cleaned.triangles.
 SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index triangle, const Vec3& place,
                         Index other = no_index);
 /// Adds a fault whose place is the centre of the triangle.

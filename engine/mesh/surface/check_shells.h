@@ -9,7 +9,7 @@
 
 namespace skerry::mesh {
 
-/// End of fault_text for a surface of an unlikely size.
+/// Last words of fault_text for SurfaceFaultKind::unlikely_size. The scene reader recognises this fault by them.
 inline constexpr std::string_view other_unit = "probably in another unit of length";
 
 /// Performs check_surface without the search for crossings, slivers and thin walls. `keep_walls`: see
@@ -17,17 +17,17 @@ inline constexpr std::string_view other_unit = "probably in another unit of leng
 SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name,
                            bool keep_walls = false);
 
-/// Performs check_surface, but keeps shells of the same orientation that are close together. They are the two sides of
-/// a thin wall if the inside of inner shells is empty.
+/// Performs check_surface, but does not drop a shell close to another one of the same orientation. If inner shells
+/// bound voids, two such shells are the sides of a thin wall.
 SurfaceReport check_surface_with_walls(const SurfaceMesh& surface, Real tolerance, const std::string& name);
 
-/// Distance that counts as rounding error in a surface [m].
+/// Distance up to which nodes or shells of a surface count as coincident [m].
 inline Real rounding_distance(const SurfaceReport& report) {
     return std::max(report.tolerance, default_weld * (report.upper - report.lower).norm());
 }
 
-/// Throws SceneError unless the surface is closed and all of its shells enclose volume. A shell that is inside out must
-/// lie in another shell, in which it bounds a void. Shells may cross each other only if `may_cross`. `name`: file or
+/// Throws SceneError unless the surface is closed and all of its shells enclose volume. A shell of negative volume must
+/// lie inside another shell, where it bounds a void. Shells may cross each other only if `may_cross`. `name`: file or
 /// body, for the error.
 void require_shells(const SurfaceMesh& surface, const std::string& name, bool may_cross);
 

@@ -14,8 +14,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Finds patches of the given triangles with a common edge at which an odd number of triangles meet, and marks all
-/// triangles of these patches. Triangles that are `dropped` do not count.
+/// Divides the given triangles into patches that are connected by edges. Marks all triangles of each patch that has an
+/// edge at which an odd number of triangles of the surface meet. `dropped` triangles are not counted.
 std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
     UnionFind patches;
     patches.start(triangles.size());
@@ -39,11 +39,12 @@ std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& gi
     return marked;
 }
 
-/// Turns triangles so that those connected by edges of two triangles have the same orientation, unless they form a
-/// one-sided strip. Returns the first triangle of each one-sided strip.
+/// Orients the triangles of each patch like most of them. A patch is connected by edges with two triangles. A one-sided
+/// patch (Moebius strip) is left as it is. Returns the first triangle of each one-sided patch.
 std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     std::vector<std::array<Index, 3>>& triangles = report.cleaned.triangles;
-    // Two entries per triangle: its present and its opposite orientation. Joined orientations fit together.
+    // Two entries per triangle: its present and its opposite orientation. Orientations that neighbours can have
+    // together are joined, so a patch is one-sided if both entries of a triangle are joined.
     UnionFind fitting;
     fitting.start(2 * triangles.size());
     for_each_edge(sides, [&](std::span<const Side> edge) {
@@ -54,9 +55,9 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
         fitting.join(a + 1, b + 1 - same);
     });
     struct Patch {
-        Index triangles = 0, opposite = 0;  // numbers of all triangles, and of those not oriented as the first one
+        Index triangles = 0, opposite = 0;  // number of triangles, and of those that do not fit the first one
     };
-    std::vector<Patch> patches(triangles.size());  // row: first triangle of the patch
+    std::vector<Patch> patches(triangles.size());  // indexed by the first triangle of the patch
     const auto roots_of = [&](std::size_t t) {
         const auto row = static_cast<Index>(2 * t);
         return std::pair(fitting.root(row), fitting.root(row + 1));
@@ -83,8 +84,9 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     return one_sided;
 }
 
-/// Calls visit(a, b) for each pair of triangle sides around the volume of one solid at an edge of an even number of
-/// triangles. Half of the sides must lead in each direction. Returns true if solids overlap at the edge.
+/// Several solids touch at an edge with four or more triangles. Finds the two triangles that bound each solid there,
+/// and calls visit(a, b) with their sides. Half of the sides must lead in each direction. Returns true if solids
+/// overlap at the edge.
 bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto&& visit) {
     const auto at = [&](Index n) -> const Vec3& { return surface.nodes[static_cast<std::size_t>(n)]; };
     const Vec3 &low = at(edge[0].node[0]), along = (at(edge[0].node[1]) - low).normalized();
@@ -111,7 +113,7 @@ bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto
     std::vector<std::size_t> open;
     bool overlap = false;
     std::vector<bool> paired(edge.size(), false);
-    for (std::size_t i = 0; i < 2 * places.size(); ++i) {  // two turns: a volume may contain the angle 0
+    for (std::size_t i = 0; i < 2 * places.size(); ++i) {  // two turns: a volume across angle 0 ends in the second
         const Place& place = places[i % places.size()];
         if (paired[place.side]) continue;
         if (place.opens && i < places.size()) open.push_back(place.side);
@@ -131,7 +133,7 @@ void report_holes(SurfaceReport& report, std::span<const Side> open) {
     for (const Side& side : open) loops.join(side.node[0], side.node[1]);
     struct Hole {
         Real length = 0;
-        Vec3 moment = Vec3::Zero();  // sum of the midpoints of the edges times their lengths
+        Vec3 moment = Vec3::Zero();  // sum over the edges of midpoint times length [m^2], for the centroid
         Index triangle = no_index;
     };
     std::vector<Hole> holes;
@@ -167,7 +169,7 @@ std::vector<Index> drop_duplicates(SurfaceReport& report) {
     }
     std::ranges::sort(entries, {}, [](const Entry& e) { return std::tuple(e.node, e.triangle); });
     std::vector<bool> dropped(entries.size(), false), opposite(entries.size(), false);
-    std::vector<Index> repeats(entries.size(), no_index);  // first triangle with the same nodes
+    std::vector<Index> repeats(entries.size(), no_index);  // for a repeated triangle: the first one with its nodes
     for (std::size_t first = 0, i = 1; i < entries.size(); ++i) {
         if (entries[i].node != entries[first].node) {
             first = i;

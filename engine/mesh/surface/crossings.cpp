@@ -25,8 +25,7 @@ Extent extent_of(const Points& triangle, const Vec3& axis) {
     return {std::min({a, b, c}), std::max({a, b, c})};
 }
 
-/// Distance by which the second triangle must move along a unit vector to end the overlap in this direction; negative
-/// if the triangles do not overlap there [m].
+/// Overlap of the projections of two triangles on a unit vector; negative if there is a gap [m].
 Real overlap_along(const Points& first, const Points& second, const Vec3& axis) {
     const Extent a = extent_of(first, axis), b = extent_of(second, axis);
     return std::min(a.high - b.low, b.high - a.low);
@@ -40,7 +39,7 @@ Real longest_side(const Points& sides) {
     return std::sqrt(std::max({sides[0].squaredNorm(), sides[1].squaredNorm(), sides[2].squaredNorm()}));
 }
 
-/// Altitude over the longest side [m].
+/// Altitude perpendicular to the longest side, the smallest of the three [m].
 Real least_altitude(const Points& x) {
     const Points sides = sides_of(x);
     const Real length = longest_side(sides);
@@ -50,10 +49,10 @@ Real least_altitude(const Points& x) {
 enum class PairFault { none, crossing, overlap };
 
 /// Tests two triangles by separating axes (Gottschalk, Lin, Manocha 1996): convex shapes are apart if and only if their
-/// projections on one of the axes are. Common corners and edges count as no overlap, because some axis separates the
-/// triangles except for these. `tolerance`: overlap that counts as rounding error [m].
+/// projections on one of the axes are. Triangles that share only a corner or an edge do not overlap, because their
+/// projections on some axis only touch. `tolerance`: overlap that counts as rounding error [m].
 PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
-    // Cross products of sides shorter than this have no reliable direction, relative to the product of the lengths.
+    // Smallest |a x b| / (|a| |b|) of two sides for which the direction of a x b is reliable.
     constexpr Real parallel = 1e-9;
     const Points u = sides_of(first), v = sides_of(second);
     const Vec3 normal = u[0].cross(u[1]).normalized(), other = v[0].cross(v[1]).normalized();
@@ -78,8 +77,8 @@ PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
     return PairFault::overlap;
 }
 
-/// Distance along the ray to the nearest triangle that does not touch triangle `from`, or `limit` if none is nearer
-/// [m]. The ray starts at `origin`, a point of this triangle.
+/// Length of the ray from `origin`, a point of triangle `from`, to the first triangle that does not touch this
+/// triangle; at most `limit` [m].
 Real free_path(const SurfaceMesh& surface, const BoxTree& tree, Index from, const Vec3& origin, const Vec3& direction,
                Real limit) {
     Real nearest = limit;

@@ -9,8 +9,8 @@ namespace skerry::mesh {
 /// rounding error [m].
 void find_crossings(SurfaceReport& report, Real distance);
 
-/// Reports places of closed shells with a wall thinner than half the mean edge. Rays from a few hundred triangles to
-/// the next triangle behind them measure the thickness.
+/// Reports places of closed shells with a wall thinner than half the mean edge. The thickness is measured at up to 1000
+/// triangles with rays along the inner normal to the next triangle.
 void find_thin_walls(SurfaceReport& report);
 
 }  // namespace skerry::mesh

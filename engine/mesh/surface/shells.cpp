@@ -43,7 +43,7 @@ std::vector<ShellSize> sizes_of(const SurfaceReport& report) {
     return sizes;
 }
 
-/// Rows of `report.cleaned` of the triangles of each shell.
+/// For each shell: indices of its triangles in report.cleaned.triangles.
 std::vector<std::vector<Index>> rows_of_shells(const SurfaceReport& report) {
     std::vector<std::vector<Index>> rows(report.shells.size());
     for (std::size_t t = 0; t < report.shell.size(); ++t)
@@ -51,7 +51,7 @@ std::vector<std::vector<Index>> rows_of_shells(const SurfaceReport& report) {
     return rows;
 }
 
-/// The given triangles, each with nodes of its own.
+/// The given triangles as a surface in which triangles share no nodes.
 SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
     SurfaceMesh part;
     for (const Index t : rows) {
@@ -62,13 +62,14 @@ SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
     return part;
 }
 
-/// Returns the largest distance of the nodes of the second shell from the first one, or nothing if it does not repeat
-/// the first one within `distance` [m]. Unless `keep_walls`, shells of the same orientation may be further apart.
+/// Returns the largest distance of the nodes of the second shell from the first one, or nullopt if the second shell
+/// does not repeat the first one within `distance` [m]. Unless `keep_walls`, the limit for shells of the same
+/// orientation is larger (`close`).
 std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSize> sizes,
                             std::span<const std::vector<Index>> rows, std::size_t first, std::size_t second,
                             Real distance, bool keep_walls) {
-    // Shells of the same orientation that are closer together than this, relative to their size, count as one shell,
-    // because the space between them is hardly meant as a region.
+    // Distance divided by the diagonal of a shell up to which two shells of the same orientation count as one, because
+    // the space between them is hardly meant as a region.
     constexpr Real close = 1e-3;
     const ShellSize &a = sizes[first], &b = sizes[second];
     const bool closed = report.shells[first].closed;
@@ -87,8 +88,9 @@ std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSi
     return std::sqrt(greatest);
 }
 
-/// Sign of the side of the line through `p` and `q` on which `x` lies, seen along the first axis. The sign of a point
-/// on the line depends on the line only, so that exactly one of two triangles at an edge contains the point.
+/// Returns 1 or -1: the side of the line from `p` to `q` on which `x` lies in the projection along the x axis. For a
+/// point on the line the side does not depend on the triangle, so that exactly one of two triangles at an edge contains
+/// the point.
 int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
     const bool swapped = q.z() < p.z() || (q.z() == p.z() && q.y() < p.y());
     const Vec3 &a = swapped ? q : p, &b = swapped ? p : q;
@@ -96,7 +98,7 @@ int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
     return left == swapped ? -1 : 1;
 }
 
-/// Finds the shells that contain a point. The rays that it follows lead along the first axis.
+/// Finds the shells that contain a point by the triangles that a ray along the x axis crosses.
 class ContainingShells {
 public:
     explicit ContainingShells(const SurfaceReport& report, std::span<const ShellSize> sizes)
@@ -108,7 +110,8 @@ public:
         triangles_ = BoxTree(triangle_boxes(report.cleaned, 0));
     }
 
-    /// The closed shells that contain `x`, except shell `own`, in ascending order.
+    /// Returns the closed shells that wind around `x`, except shell `own`, in ascending order. Only triangles that the
+    /// ray from `x` towards larger x crosses are counted.
     std::vector<Index> around(const Vec3& x, Index own) {
         const auto on_ray = [&](const Aabb& box) {
             return box.lower.y() <= x.y() && x.y() <= box.upper.y() && box.lower.z() <= x.z() &&
@@ -140,11 +143,11 @@ public:
 private:
     const SurfaceReport& report_;
     BoxTree shells_, triangles_;
-    std::vector<int> winding_;   // winding number of each shell around the point
-    std::vector<Index> passed_;  // shells that the ray passes through
+    std::vector<int> winding_;   // winding number of each shell around the present point; 0 between calls of around()
+    std::vector<Index> passed_;  // shells whose triangles the ray of the present point crosses
 };
 
-/// A group of triangles of a shell: the volume behind each of them is inside of the same set of other shells.
+/// Number of triangles of a shell behind which the same other shells contain the volume, and the first of them.
 struct Surrounded {
     std::size_t count = 0;
     Index first = no_index;
@@ -152,7 +155,7 @@ struct Surrounded {
 using SurroundedTriangles = std::map<std::pair<Index, std::vector<Index>>, Surrounded>;
 
 SurroundedTriangles surrounded_triangles(const SurfaceReport& report, std::span<const ShellSize> sizes) {
-    constexpr Real depth = 1e-6;  // depth of the points behind the triangles, relative to the size of the surface
+    constexpr Real depth = 1e-6;  // depth of test points behind the triangles, divided by the diagonal of the surface
     const Real below = depth * (report.upper - report.lower).norm();
     ContainingShells containing(report, sizes);
     SurroundedTriangles found;
@@ -170,9 +173,9 @@ SurroundedTriangles surrounded_triangles(const SurfaceReport& report, std::span<
     return found;
 }
 
-/// Sets `around` of each shell that lies in others with all of its triangles.
+/// Sets `around` of each shell to the smallest shell of larger volume that contains all of its triangles.
 void nest(SurfaceReport& report, const SurroundedTriangles& surrounded) {
-    std::map<std::pair<Index, Index>, std::size_t> inside;  // number of triangles of the first shell in the second
+    std::map<std::pair<Index, Index>, std::size_t> inside;  // number of triangles of shell first in shell second
     for (const auto& [key, group] : surrounded)
         for (const Index other : key.second) inside[{key.first, other}] += group.count;
     for (const auto& [pair, count] : inside) {
@@ -184,7 +187,7 @@ void nest(SurfaceReport& report, const SurroundedTriangles& surrounded) {
     }
 }
 
-/// Turns each outermost shell of negative volume, and the shells inside it.
+/// Reverses the triangles of each outermost shell of negative volume, and those of the shells inside it.
 void turn_inside_out(SurfaceReport& report) {
     std::vector<bool> turned(report.shells.size(), false);
     for (std::size_t s = 0; s < turned.size(); ++s) {
@@ -246,7 +249,7 @@ void compare_shells(SurfaceReport& report) {
         SurfaceShell& shell = report.shells[own];
         if (seen[own] || !shell.closed) continue;
         seen[own] = true;
-        constexpr Real flat = 1e-12;  // rounding error of the volume, relative to the cube of the size
+        constexpr Real flat = 1e-12;  // a volume up to this times the cube of the size is a rounding error
         const Real size = (sizes[own].box.upper - sizes[own].box.lower).maxCoeff();
         shell.volume = sizes[own].volume;
         if (std::abs(shell.volume) <= flat * size * size * size)
@@ -261,7 +264,7 @@ void compare_shells(SurfaceReport& report) {
         return report.shells[static_cast<std::size_t>(shell)].volume > 0 ? 1 : -1;
     };
     for (const auto& [key, group] : surrounded) {
-        int volumes = sign_of(key.first);  // number of volumes that contain the points behind the triangles
+        int volumes = sign_of(key.first);  // solids around the points behind the triangles; a void counts -1
         for (const Index other : key.second) volumes += sign_of(other);
         if (volumes > 1 || (volumes < 0 && !key.second.empty()))
             add_fault(report, SurfaceFaultKind::doubled_volumes, group.first).count += group.count - 1;

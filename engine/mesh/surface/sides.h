@@ -12,11 +12,11 @@ namespace skerry::mesh {
 
 using Triangles = std::span<const std::array<Index, 3>>;
 
-/// A side of a triangle. Side k of triangle t leads from its corner k to its next corner. Corners are numbered three
-/// per triangle.
+/// A side of a triangle. Side k of triangle t leads from its corner k to its next corner. Corner k of triangle t has
+/// the number 3 t + k.
 struct Side {
     std::array<Index, 2> node;    // node numbers in ascending order
-    std::array<Index, 2> corner;  // corners of the triangle at the two nodes, in the order of `node`
+    std::array<Index, 2> corner;  // corners of the triangle at node[0] and node[1]
 
     Index triangle() const { return corner[0] / 3; }
     /// True if the side leads from the lower to the higher node number.
@@ -34,13 +34,14 @@ void for_each_edge(std::span<const Side> sides, auto&& visit) {
     }
 }
 
-/// Joins the corners of two triangles at the nodes of their common edge.
+/// Joins in `fans` the corners of two triangles at the two ends of their common edge.
 inline void join_corners(UnionFind& fans, const Side& a, const Side& b) {
     for (std::size_t end = 0; end < 2; ++end) fans.join(a.corner[end], b.corner[end]);
 }
 
-/// Finds nodes whose triangles form several fans. Returns one corner of each fan except the first one of its node, in
-/// the order of the nodes. `fans`: corners, joined where triangles have a common edge.
+/// Finds nodes with several fans (triangles around a node that are connected by edges at the node). Returns one corner
+/// of each fan except the first fan of a node, in the order of the nodes. `fans`: result of join_corners for all common
+/// edges.
 std::vector<Index> further_fans(Triangles triangles, UnionFind& fans);
 
 }  // namespace skerry::mesh

@@ -8,8 +8,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Joins nodes up to `distance` apart. The nodes are sorted along a direction that is parallel to no plane of usual
-/// grids, so that only few nodes lie in a slab of the thickness `distance`.
+/// Joins nodes up to `distance` apart. The nodes are sorted along a direction that is normal to no plane of usual
+/// grids. Therefore few nodes lie in a slab of the thickness `distance` normal to it, and only those are compared.
 void join_close_nodes(std::span<const Vec3> nodes, Real distance, UnionFind& joined) {
     const Vec3 direction(0.41, 0.57, 0.71205);
     std::vector<std::pair<Real, Index>> along;

@@ -7,16 +7,16 @@ namespace skerry::mesh {
 
 namespace {
 
-// Factor from the computed excess of bending energy to the true excess. The energy is computed for nodes at the
-// positions of exact bending. If nodes are free to move, the energy is lower. Strips of one or two layers of cells,
-// solved statically, have factors of 0.65 to 1; the factor is least for strips two flat cells wide.
+// Ratio of the true excess of bending energy to the computed one. The computed energy holds for nodes at the positions
+// of exact bending; nodes that are free to move find a state of lower energy. Strips of one or two layers of cells,
+// solved statically, have factors of 0.65 to 1; the smallest ratio belongs to strips that are two flat cells wide.
 constexpr Real remaining_excess = 0.8;
 
-/// Displacements of pure bending with the curvature 1, about the middle of a column.
+/// Displacements of pure bending with the curvature 1/m, whose neutral axis passes through a column (Saint-Venant).
 struct Bending {
     std::size_t part, column;
     Vec3 middle;                   // point of zero strain [m]
-    Vec3 tangent, across, normal;  // orthonormal: direction of bending, its axis, and direction of the column
+    Vec3 tangent, across, normal;  // orthonormal: axis of the bent part, axis of rotation, and direction of the column
     Real poisson_ratio, young_modulus;
 
     Vec3 displacement(const Vec3& place) const {
@@ -27,7 +27,8 @@ struct Bending {
     }
 };
 
-/// Energy density of a small strain [J/m^3]. `part`: the part of the stress that the element exerts.
+/// Energy density of a small strain [J/m^3]. `part`: whether the element carries the volumetric part of the stress
+/// (lambda), the shear part (mu), or both.
 Real energy_density(const Mat3& displacement_gradient, const Bending& bending, ElementPart part) {
     const Real E = bending.young_modulus, nu = bending.poisson_ratio;
     const Real mu = part == ElementPart::volume ? 0 : E / (2 * (1 + nu));
@@ -36,13 +37,13 @@ Real energy_density(const Mat3& displacement_gradient, const Bending& bending, E
     return mu * strain.squaredNorm() + lambda / 2 * strain.trace() * strain.trace();
 }
 
-/// The tetrahedra that columns cross, and all others that share a node with them. The others are needed to make all
-/// elements that cover a crossed tetrahedron.
+/// The tetrahedra that columns cross, and all others that share a node with them. The others are needed because
+/// smoothed elements average the strain over the tetrahedra around an edge or a node.
 struct Surroundings {
     std::vector<std::array<Index, 4>> tetrahedra;
     std::vector<MaterialZone> zones;  // zones whose tetrahedra are numbered as in `tetrahedra`
-    std::vector<Index> row;           // by tetrahedron of the mesh: its entry in `tetrahedra`, or no_index
-    std::vector<Index> material;      // material of each entry of `tetrahedra`
+    std::vector<Index> row;           // for each tetrahedron of the mesh: its index in `tetrahedra`, or no_index
+    std::vector<Index> material;      // index of the material of each entry of `tetrahedra`
 };
 
 Surroundings surroundings_of(const Mesh& mesh, std::span<const BentColumn> columns,
@@ -69,7 +70,8 @@ Surroundings surroundings_of(const Mesh& mesh, std::span<const BentColumn> colum
     return nearby;
 }
 
-/// Distance of the neutral axis from the start of a column [m].
+/// Distance of the neutral axis from the start of a column: centroid of the column weighted by the modulus, int E z dz
+/// / int E dz [m].
 Real neutral_distance(const ThinColumn& column, const Surroundings& nearby,
                       std::span<const ElasticConstants> materials) {
     Real moment = 0, stiffness = 0;
@@ -82,7 +84,8 @@ Real neutral_distance(const ThinColumn& column, const Surroundings& nearby,
     return moment / stiffness;
 }
 
-/// The exact energy of bending in a tetrahedron [J].
+/// Energy of exact bending with the curvature 1/m in a tetrahedron: int E z^2 / 2 dV, with z measured from the neutral
+/// axis [J].
 Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> position, const Bending& bending) {
     Real sum = 0, squares = 0;
     for (const Index n : tetrahedron) {
@@ -90,7 +93,7 @@ Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3>
         sum += z;
         squares += z * z;
     }
-    const Real mean_square = (squares + sum * sum) / 20;  // over the tetrahedron
+    const Real mean_square = (squares + sum * sum) / 20;  // mean of z^2, where z is linear in the tetrahedron [m^2]
     return bending.young_modulus / 2 * mean_square * skerry::six_volumes(tetrahedron, position) / 6;
 }
 
@@ -99,9 +102,10 @@ Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3>
 std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn> columns, std::size_t part_count,
                                     std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials) {
     const Surroundings nearby = surroundings_of(mesh, columns, zones);
-    // Several columns of a part may cross a tetrahedron. The first of them determines how the part bends there.
+    // Several columns of a part may cross a tetrahedron. The first of these columns defines the neutral axis and the
+    // directions of bending in the tetrahedron.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
-    std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);  // energies by column [J]
+    std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);  // energy by column: exact, elements [J]
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const BentColumn& bent = columns[c];
         const ThinColumn& column = *bent.column;
@@ -125,8 +129,9 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
                 visit(e, row, elements.part[e] == ElementPart::volume ? 1U : 0U);
             }
     };
-    // Number of elements that cover a tetrahedron: elements with the volumetric part of the stress, and all other
-    // elements. The elements of each kind get equal shares of the tetrahedron.
+    // For each tetrahedron: number of elements that include it and carry the shear part of the stress or both parts
+    // [0], and number of those that carry only the volumetric part [1]. The volume is divided equally among the
+    // elements of each kind.
     std::vector<std::array<int, 2>> covered(nearby.tetrahedra.size(), {0, 0});
     for_each_share([&](std::size_t, std::size_t row, std::size_t kind) { ++covered[row][kind]; });
     for_each_share([&](std::size_t e, std::size_t row, std::size_t kind) {
@@ -140,8 +145,9 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
         }
     });
 
-    // Columns under the same moment bend in inverse proportion to their stiffness, so their compliances are averaged.
-    // In a mean of stiffnesses a few slivers would count more than all other columns.
+    // The bending moment is about the same in all columns, and each bends in proportion to its compliance exact /
+    // found. Therefore compliances are averaged, weighted by exact energy. A mean of stiffnesses would be dominated by
+    // a few slivers.
     std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!(exact[c] > 0)) continue;

@@ -1,4 +1,4 @@
-// Stiffness of elements in bending, compared with the material.
+// Bending stiffness of the elements of thin parts, as a multiple of the stiffness by the theory of beams.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace skerry::mesh {
 
-/// A column of a part, and the direction in which the part is bent there: along `tangent`, a unit vector across the
-/// direction of the column.
+/// A column of a part, and the direction of the axis that becomes curved when the part is bent: `tangent`, a unit
+/// vector perpendicular to the column.
 struct BentColumn {
     const ThinColumn* column;
     Vec3 tangent;

@@ -15,21 +15,21 @@ struct Crossing {
     Real begin, end;  // distances from the start of the ray [m]
 };
 
-/// Tetrahedra that a ray crosses between two opposite boundary triangles. The ray starts at the centroid of the first
-/// triangle and follows its inner normal.
+/// The tetrahedra along a ray through a thin part. The ray starts at the centroid of a boundary triangle (`first`),
+/// follows its inner normal, and leaves through the boundary triangle `last`.
 struct ThinColumn {
-    std::array<Index, 3> first, last;  // nodes of the two boundary triangles, each in ascending order
-    Vec3 start, direction;             // centroid [m], and unit vector
+    std::array<Index, 3> first, last;  // nodes of the triangles of entry and exit, each in ascending order
+    Vec3 start, direction;             // start of the ray [m], and its unit vector
     Real area;                         // area of the first triangle [m^2]
     std::vector<Crossing> crossings;
-    // thickness divided by the mean extent of the crossed tetrahedra along the ray: about the number of layers of cells
+    // number of layers of cells, approximately: thickness over mean extent of a crossed tetrahedron along the ray
     Real layers;
 
     Real thickness() const { return crossings.back().end; }
 };
 
-/// Returns a column for each boundary triangle under which the mesh is thin: at most twice as thick as the edges of
-/// the crossed tetrahedra are long on average.
+/// Returns a column for each boundary triangle under which the mesh is thin: its thickness is at most twice the mean
+/// edge length of the crossed tetrahedra.
 std::vector<ThinColumn> thin_columns(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary);
 
 }  // namespace skerry::mesh

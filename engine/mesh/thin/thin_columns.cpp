@@ -11,25 +11,25 @@ namespace skerry::mesh {
 
 namespace {
 
-// Greatest thickness of a thin column, as a multiple of the mean edge length of its tetrahedra. Three layers of cubic
-// cells with six tetrahedra each have a ratio of 2.4, two layers of 1.6.
+// Greatest thickness of a thin column, as a multiple of the mean edge length of its tetrahedra. Of cubic cells with six
+// tetrahedra each, two layers have the ratio 1.6 and count as thin; three layers have 2.4 and do not.
 constexpr Real thickest = 2;
-// Least cosine of the angle between the ray and the outer normal of the triangle through which the ray leaves: 18
-// degrees. At a larger angle the part is a wedge, such as the rim of a fin.
+// Least cosine of the angle between the ray and the outer normal of the triangle through which the ray leaves (18
+// degrees). At a larger angle the two sides form a wedge, such as the rim of a fin, which is not treated as thin.
 constexpr Real opposite = 0.95;
 
-/// A face of a tetrahedron, opposite to one of its corners.
+/// The face of a tetrahedron opposite to `corner` (0 to 3).
 struct Face {
-    Index tetrahedron = no_index;  // entry of NearBoundary::number; no_index if there is none
+    Index tetrahedron = no_index;  // index in NearBoundary::number; no_index: no face
     Index corner = 0;
 };
 
-/// Tetrahedra that a ray through a thin part can cross: those with a node on the boundary or next to the boundary.
+/// Tetrahedra that a ray through a thin part can cross: those with a node on the boundary or one edge away from it.
 struct NearBoundary {
     std::vector<Index> number;  // numbers of the tetrahedra in the mesh
-    // For the face opposite to each corner of each tetrahedron: the same face as part of the neighbour.
+    // beyond[t][k]: the face opposite to corner k of tetrahedron t, seen from the neighbour that shares it.
     std::vector<std::array<Face, 4>> beyond;
-    // by tetrahedron and corner: true if the face opposite to the corner is on the boundary
+    // on_boundary[t][k]: true if the face opposite to corner k of tetrahedron t is on the boundary
     std::vector<std::array<bool, 4>> on_boundary;
     std::vector<Face> boundary;  // faces on the boundary
 };
@@ -66,8 +66,8 @@ NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3
             near.beyond[static_cast<std::size_t>(faces[f].tetrahedron)][faces[f].corner] = face;
         } else if (std::ranges::all_of(faces[f].node,
                                        [&](Index n) { return place[static_cast<std::size_t>(n)] == outer; })) {
-            // A face without a neighbour in this list is on the boundary only if all its nodes are. Otherwise its
-            // neighbour exists, but is not near the boundary.
+            // A face that occurs once in this list is on the boundary if all of its nodes are. Otherwise the
+            // tetrahedron on its other side exists, but is not near the boundary.
             near.on_boundary[row][corner] = true;
             near.boundary.push_back(face);
         }
@@ -81,7 +81,7 @@ class RayWalk {
 public:
     RayWalk(const Mesh& mesh, const NearBoundary& near) : mesh_(mesh), near_(near) {}
 
-    /// Returns the column under a boundary face; nothing if the mesh is not thin there.
+    /// Returns the column under a boundary face, or nullopt if the mesh is not thin there.
     std::optional<ThinColumn> column_under(Face face) const {
         const std::array<Index, 3> first = nodes_of(face);
         const Vec3 normal = outer_normal(face);
@@ -105,7 +105,7 @@ public:
             }
             face = beyond(exit->first);
             if (face.tetrahedron == no_index) return std::nullopt;
-            // A ray through a node or an edge can run in a circle because of rounding errors.
+            // Rounding errors can make a ray through a node or an edge enter the tetrahedra around it again and again.
             const bool again =
                 std::ranges::find(column.crossings, number(face), &Crossing::tetrahedron) != column.crossings.end();
             if (again) return std::nullopt;
@@ -113,7 +113,7 @@ public:
     }
 
 private:
-    /// Mean extent of the crossed tetrahedra along the ray [m].
+    /// Mean over the crossed tetrahedra of their extent in the direction of the ray [m].
     Real mean_extent(const ThinColumn& column) const {
         Real sum = 0;
         for (const Crossing& crossing : column.crossings) {
@@ -150,7 +150,7 @@ private:
         return nodes;
     }
 
-    /// Normal of a face that points out of its tetrahedron. Its length is twice the area of the face.
+    /// Normal of a face, pointing out of its tetrahedron. The length is twice the area of the face [m^2].
     Vec3 outer_normal(Face face) const {
         const std::array<Index, 3> nodes = nodes_of(face);
         const Vec3 normal = (at(nodes[1]) - at(nodes[0])).cross(at(nodes[2]) - at(nodes[0]));
@@ -159,7 +159,7 @@ private:
     }
 
     /// Returns the face through which the ray leaves the tetrahedron that it entered through `entered`, and the
-    /// distance from the start of the ray.
+    /// distance of this point from the start of the ray [m]. Returns nullopt if rounding errors leave no such face.
     std::optional<std::pair<Face, Real>> exit_of(const ThinColumn& ray, Face entered) const {
         std::optional<std::pair<Face, Real>> exit;
         for (Index corner = 0; corner < 4; ++corner) {

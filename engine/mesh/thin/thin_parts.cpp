@@ -17,16 +17,17 @@ namespace {
 // Least ratio of length to thickness of a part. Shorter parts carry loads by shear and compression more than by
 // bending.
 constexpr Real slender = 4;
-// Least volume of a part, as a fraction of the volume of the mesh. Fins and tails of animal meshes have up to 2 %, a
-// leg of a table 5 %.
+// Least volume of a part, as a fraction of the volume of the mesh. The value excludes fins and tails of animals (up to
+// 2 %) and includes the leg of a table (5 %).
 constexpr Real noticeable_volume = 0.03;
-// Least cosine of the angle between neighbouring triangles of a part. At sharper edges another side begins.
+// Least cosine of the angle between neighbouring triangles of a part. At a sharper edge another side of the body
+// begins, which is a part of its own.
 constexpr Real smooth_edge = 0.7;
 // Largest number of columns of a part whose energy is computed. They are spread evenly over the part.
 constexpr std::size_t most_columns = 500;
 
-/// Groups columns by part: columns are connected if they begin at neighbouring triangles, or if one begins where the
-/// other ends.
+/// Groups columns by part. Two columns belong to the same part if their first triangles share a smooth edge, or if one
+/// starts at the last triangle of the other.
 std::vector<std::vector<const ThinColumn*>> connected(std::span<const ThinColumn> columns) {
     UnionFind parts;
     parts.start(columns.size());
@@ -60,7 +61,7 @@ std::vector<std::vector<const ThinColumn*>> connected(std::span<const ThinColumn
     return grouped;
 }
 
-/// Measures a part. `axis` becomes the direction of its longest extent.
+/// Measures a part. Sets `axis` to the direction in which the starts of its columns spread most (principal axis).
 ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, Vec3& axis) {
     ThinPart part;
     Real area = 0;
@@ -71,7 +72,9 @@ ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, V
         part.layers += column->area * column->layers;
     }
     part.place /= area;
-    part.volume = part.thickness / 2;  // half, because columns from opposite triangles fill the same space
+    // `thickness` is still the sum of area times thickness; half of it, because columns from opposite triangles fill
+    // the same space
+    part.volume = part.thickness / 2;
     part.thickness /= area;
     part.layers /= area;
     Mat3 spread = Mat3::Zero();
@@ -91,9 +94,10 @@ ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, V
     return part;
 }
 
-/// The direction in which a column is bent: along the axis of its part.
+/// Direction in which the part extends at a column: the axis of the part, made perpendicular to the column. Any
+/// perpendicular direction is used if the column is nearly parallel to the axis.
 Vec3 tangent_of(const ThinColumn& column, const Vec3& axis) {
-    constexpr Real too_steep = 0.1;  // sine of the angle between the column and the axis
+    constexpr Real too_steep = 0.1;  // smallest usable sine of the angle between the column and the axis
     const Vec3 along = axis - axis.dot(column.direction) * column.direction;
     return along.norm() > too_steep ? Vec3(along.normalized()) : Vec3(column.direction.unitOrthogonal());
 }

@@ -31,9 +31,10 @@ struct ThinPart {
 /// Returns the thin parts of a mesh of positive tetrahedra. `boundary` lists its boundary triangles. `zones` lists the
 /// elements of the body; MaterialZone::material is an index of `materials`.
 ///
-/// A ray is followed from each boundary triangle along its inner normal. The mesh is thin there if the ray soon leaves
-/// it again through an opposite triangle. Connected thin triangles form a part. The stiffness is the elastic energy of
-/// the elements in pure bending of the part, divided by the exact energy (docs/methods/elasticity.md 7.8).
+/// A ray is followed from each boundary triangle along its inner normal. The mesh is thin there if the ray leaves it
+/// within two mean edge lengths, through a triangle nearly perpendicular to the ray. Neighbouring triangles of this
+/// kind form a part. The stiffness is the elastic energy of the elements in pure bending of the part, divided by the
+/// exact energy (docs/methods/elasticity.md 7.8).
 std::vector<ThinPart> thin_parts(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary,
                                  std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials);
 

@@ -15,10 +15,11 @@ namespace skerry {
 
 namespace {
 
-// Largest usual distance of a visual surface from a body with a coarse mesh, in mean edge lengths of its boundary.
+// Largest usual distance of a visual surface outside of a body, divided by the mean edge length of the boundary of the
+// body. A coarse mesh follows the visual surface only roughly.
 constexpr Real most_edges_outside = 3;
 
-/// Finds the tetrahedron around a point, and the nearest point of the boundary.
+/// A body at rest, to find the tetrahedron around a point or the point of the boundary nearest to it.
 class RestShape {
 public:
     /// `boundary`: boundary of the tetrahedra, with at least one triangle.
@@ -41,7 +42,8 @@ public:
     /// A point outside of the body follows the nearest triangle that faces the same way, so that surfaces on both sides
     /// of a gap follow different sides. If there is no such triangle nearby, the point follows the nearest triangle.
     MaterialPoint nearest(const Vec3& place, const Vec3& normal) const {
-        // Tolerance for rounding errors of barycentric coordinates, so that no point lies between two tetrahedra.
+        // Largest rounding error of barycentric coordinates. Without it a point on a face could be outside of both
+        // tetrahedra.
         constexpr Real rounding = 1e-9;
         MaterialPoint inside;
         Real best = -rounding;
@@ -58,7 +60,7 @@ public:
         if (best > -rounding) return inside;
         mesh::NearestTriangle found = tree_.nearest_facing(place, normal, reach_ * reach_);
         if (found.triangle == no_index) found = tree_.nearest(place);
-        if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // squares of distances overflow
+        if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // only if squared distances overflow
         const auto& [a, b, c] = boundary_.triangles[static_cast<std::size_t>(found.triangle)];
         return {{a, b, c, a}, {found.weight[0], found.weight[1], found.weight[2], 0}};
     }
@@ -68,11 +70,12 @@ private:
     std::span<const std::array<Index, 4>> tetrahedra_;
     const SurfaceMesh& boundary_;
     mesh::TriangleTree tree_;
-    Real reach_;  // largest distance of triangles that are preferred for their normal [m]
+    Real reach_;  // distance up to which a triangle that faces the same way is preferred to the nearest triangle [m]
     BoxTree boxes_;
 };
 
-/// Normals of the nodes of a surface: sums over their triangles, weighted by area [m^2].
+/// Normals of the nodes of a surface, not normalised: sum of the unit normals of the triangles at the node, times twice
+/// their area [m^2].
 std::vector<Vec3> normals_of_nodes(const VisualSurface& surface) {
     std::vector<Vec3> normals(surface.nodes.size(), Vec3::Zero());
     for (const std::array<Index, 3>& corners : surface.triangles) {
@@ -97,8 +100,9 @@ Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
     return place;
 }
 
-/// Terms of the deformation gradients of the nodes in `wanted`. The gradient of a tetrahedron, weighted by its volume,
-/// is the sum over its corners of x a^T / 3, where a is the area vector of the opposite face, pointing inwards.
+/// Terms of the deformation gradients of the nodes in `wanted`. Volume times gradient of a tetrahedron is the sum of x
+/// a^T / 3 over its corners, where x is the position of the corner and a the inward area vector of the opposite face at
+/// rest.
 Ragged<GradientTerm> gradients_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                   const std::vector<bool>& wanted) {
     std::vector<std::vector<GradientTerm>> terms(nodes.size());
@@ -137,9 +141,10 @@ Real extent_of(std::span<const Vec3> points) {
     return points.empty() ? 0 : (box.upper - box.lower).maxCoeff();
 }
 
-/// Describes a fit that suggests wrong units or a wrong position. `edge`: mean edge length of the body [m].
+/// Returns a warning if the fit suggests wrong units or a wrong position of the visual surface, else an empty text.
+/// `edge`: mean edge length of the body [m].
 std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, Real edge) {
-    // A wrong unit changes sizes by a factor of at least 10.
+    // Confused units of length (mm, cm, m) change the ratio by a factor of at least 10.
     constexpr Real most_ratio = 5;
     const Real ratio = extent_of(visual.surface.nodes) / extent_of(nodes);
     if (ratio > most_ratio || ratio < 1 / most_ratio)
@@ -152,8 +157,8 @@ std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, R
     return {};
 }
 
-/// Binds all nodes to a rigid body, each to the nearest point of its triangles. Offsets from these points turn with one
-/// tetrahedron of distant nodes. Without triangles all nodes are bound to this tetrahedron.
+/// Binds all nodes of the visual surface to a rigid body, each to the nearest point of `triangles`. The offsets rotate
+/// with one tetrahedron of nodes that are far apart. If `triangles` is empty, all nodes are bound to this tetrahedron.
 void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles) {
     const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
     visual.fit.warning = warning_of(visual, nodes, infinity);
@@ -171,7 +176,7 @@ void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes, std::span<c
         for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
     }
     const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corners[k])]; };
-    std::array<GradientTerm, 4> terms{};  // gradients of the weights of the corners
+    std::array<GradientTerm, 4> terms{};  // gradients of the barycentric coordinates at rest [1/m]
     terms[0] = {corners[0], Vec3::Zero()};
     const Vec3 u = at(1) - at(0), v = at(2) - at(0), w = at(3) - at(0);
     const std::array<Vec3, 3> area{v.cross(w), w.cross(u), u.cross(v)};
@@ -206,7 +211,8 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Vec3& place = visual.surface.nodes[i];
         const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, normals[i]));
-        // The nearest point of a node inside is the node itself, up to rounding.
+        // RestShape::nearest repeats the first node only for points on the boundary. A node inside the body gets the
+        // offset zero, not a rounding error.
         const bool is_inside = point.node[3] != point.node[0];
         visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));
         const Real distance = visual.offset.back().norm();
@@ -222,7 +228,7 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
 
 VisualPoints split_at_seams(const VisualSurface& surface) {
     VisualPoints points;
-    std::map<std::array<Index, 2>, Index> known;  // points by node and texture point
+    std::map<std::array<Index, 2>, Index> known;  // index of the point for each pair (node, texture point)
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         std::array<Index, 3>& corners = points.triangles.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {

@@ -11,21 +11,23 @@
 
 namespace skerry {
 
-/// Part of a deformation gradient that a node contributes: F is the sum of x gradient^T over nodes at positions x.
+/// One node's term of a deformation gradient F: F is the sum of x gradient^T over the terms, where x is the position of
+/// `node`.
 struct GradientTerm {
     Index node;
     Vec3 gradient;  // [1/m]
 };
 
-/// Each node of the surface is at p + F d: p is the nearest point of the body, d the offset from p at rest, and F a
-/// deformation gradient. Outside of a deformable body p is on a face that faces the same way, if one is near. F is
-/// interpolated between nodes of the body, where it is the mean over the tetrahedra around the node, weighted by
-/// volume. For a rigid body F comes from one tetrahedron of distant nodes. All node numbers are local to the body.
+/// A node of the surface has the position p + F d: p is the material point of the body that was nearest at rest, d the
+/// offset of the node from p at rest, and F the deformation gradient at p. If the node is outside of a deformable body,
+/// p is on a boundary triangle that faces the same way as the surface, if one is near. F is interpolated between nodes
+/// of the body. At a node it is the mean over the adjacent tetrahedra, weighted by volume. For a rigid body F comes
+/// from one tetrahedron of nodes that are far apart. All node numbers are local to the body.
 struct BoundVisual {
     VisualSurface surface;
     VisualFit fit;
-    std::vector<MaterialPoint> point;  // nearest point of the body, by node of the surface
-    std::vector<Vec3> offset;          // offset from this point at rest, by node of the surface [m]
+    std::vector<MaterialPoint> point;  // the point p for each node of the surface
+    std::vector<Vec3> offset;          // the offset d for each node of the surface [m]; empty: all zero
     // Terms of the deformation gradient, by node of the body. Nodes that no offset depends on have no terms.
     Ragged<GradientTerm> gradient;
 };
@@ -33,7 +35,7 @@ struct BoundVisual {
 /// Points of a surface, each with one node and at most one texture point. A node at which texture coordinates jump has
 /// several points.
 struct VisualPoints {
-    std::vector<Index> node, texture_point;         // by point; no_index: no texture point
+    std::vector<Index> node, texture_point;  // for each point: index of its node, and of its texture point or no_index
     std::vector<std::array<Index, 3>> triangles{};  // indices of points
 };
 VisualPoints split_at_seams(const VisualSurface& surface);
@@ -43,16 +45,18 @@ VisualPoints split_at_seams(const VisualSurface& surface);
 void require_visual(const VisualSurface& surface, const std::string& object);
 
 /// Binds a valid surface to a body at rest. `nodes`: positions at rest [m]. A body without tetrahedra is rigid; `nodes`
-/// must then not lie in one plane. `triangles`: surface of a rigid body, at which values are taken.
+/// must then not lie in one plane. `triangles`: surface of a rigid body, whose nearest points give the surface its
+/// positions and values.
 BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
                         std::span<const std::array<Index, 4>> tetrahedra,
                         std::span<const std::array<Index, 3>> triangles = {});
 
-/// Positions of the nodes of the surface, given those of the body [m]; or velocities, given those of the body [m/s].
+/// Positions of the nodes of the surface, given the positions of the nodes of the body [m]. The function is linear, so
+/// it also maps velocities [m/s].
 std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body);
 
-/// Values at the nodes of the surface, interpolated from values at the nodes of the body. A node outside of the body
-/// has the value of the nearest point.
+/// Values at the nodes of the surface, interpolated from the values `of_body` at the nodes of the body. A node outside
+/// of the body has the value of its material point p.
 template <class T>
 std::vector<T> visual_values(const BoundVisual& visual, std::span<const T> of_body) {
     std::vector<T> values;

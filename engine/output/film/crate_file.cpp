@@ -12,16 +12,18 @@ static_assert(std::endian::native == std::endian::little, "crate files store lit
 
 namespace {
 
-// Parts of a CrateValue.
+// Bit fields of a CrateValue: flag "array", flag "inlined" (the payload is the value, else a position in the file),
+// type, payload.
 constexpr std::uint64_t array_bit = 1ull << 63, inlined_bit = 1ull << 62;
 constexpr int type_shift = 48;
 constexpr std::uint64_t payload_mask = (1ull << type_shift) - 1;
 
-constexpr std::string_view header("PXR-USDC\0\x08\0\0\0\0\0\0", 16);  // identification and version
-constexpr std::size_t header_reserved = 64;                           // bytes after the position of the contents
-constexpr std::uint32_t end_of_fields = ~0u;                          // ends each set of fields
+constexpr std::string_view header("PXR-USDC\0\x08\0\0\0\0\0\0", 16);  // identification, version 0.8.0 in 8 bytes
+constexpr std::size_t header_reserved = 64;   // reserved zero bytes after the position of the table of contents
+constexpr std::uint32_t end_of_fields = ~0u;  // ends each list of field indices in the table of field sets
 
-/// Encodes bytes as a block of LZ4 that consists of literals only, after the number of further blocks (0).
+/// Encodes bytes as an LZ4 block of literals, that is, without compression. A zero byte comes first: the format stores
+/// there the number of further blocks.
 std::string literal_block(std::string_view bytes) {
     std::string out(1, '\0');
     constexpr std::size_t short_length = 15, long_step = 255;
@@ -41,18 +43,19 @@ std::string_view characters(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-/// The tables of specs, paths and fields, which the file has at its end.
+/// The tables of specs, paths and fields. close() writes them at the end of the file.
 struct CrateFile::Tables {
     std::vector<std::int32_t> field_token, field_sets;
     std::vector<CrateValue> field_value;
     std::vector<std::int32_t> spec_path, spec_fields, spec_kind;
-    // Paths in depth-first order: number of the path, last part of the path as token (negative for a property), and
-    // step to the next sibling: -2 without child and sibling, -1 with a child only, 0 with a sibling only.
+    // Paths in depth-first order: index of the path, token of its last element (negative for a property), and distance
+    // in this table to the next sibling. Three distances are codes: -2 without child and next sibling, -1 with a child
+    // only, 0 with a next sibling only.
     std::vector<std::int32_t> path_number, path_token, path_jump;
 };
 
 CrateFile::CrateFile(std::iostream& file) : file_(file) {
-    // the sign of a token number distinguishes properties from prims, so no property may have the number 0
+    // The path table negates the token index of a property, so index 0 goes to the empty token, which no property has.
     token_index("");
     write(std::as_bytes(std::span(header)));
     write(std::vector<std::byte>(sizeof(std::int64_t) + header_reserved));
@@ -165,8 +168,8 @@ CrateValue CrateFile::times(std::span<const double> times) {
 CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue> values) {
     align();
     const CrateValue value = stored(CrateType::time_samples, size_);
-    // Each of the two offsets skips data that the format allows at this place. Here these data are stored elsewhere, so
-    // nothing is skipped.
+    // The format has a relative offset before the times and before the values, so that their data can come first. Here
+    // the data are stored elsewhere, and each offset only skips its own 8 bytes.
     constexpr auto next = static_cast<std::int64_t>(sizeof(std::int64_t));
     put(next);
     put(times);
@@ -200,7 +203,8 @@ void CrateFile::put_packed(std::string_view bytes) {
 }
 
 /// Writes integers in the coding of the format: the most common difference of neighbours, a code of two bits for the
-/// size of each difference, and the differences. All differences get 32 bits here.
+/// size of each difference, and the differences. Here the most common difference is not used (0), and all differences
+/// have 32 bits (code 3).
 void CrateFile::put_integers(std::span<const std::int32_t> values) {
     constexpr std::size_t codes_per_byte = 4;
     std::string bytes(sizeof(std::int32_t), '\0');
@@ -214,7 +218,7 @@ void CrateFile::put_integers(std::span<const std::int32_t> values) {
     put_packed(bytes);
 }
 
-/// Adds the fields that list the properties and prims of a spec and of its children.
+/// Adds to a spec and to all specs below it the fields that list the names of their properties and prims.
 void CrateFile::list_children(CrateSpec& spec) {
     std::vector<std::string> properties, prims;
     for (CrateSpec& child : spec.children) {

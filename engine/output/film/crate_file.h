@@ -36,10 +36,10 @@ enum class CrateType : std::uint8_t {
     double_vector = 48,
 };
 
-/// A value of the file, in the encoding of the format: its type, and the value itself or its position in the file.
+/// A value in the 64-bit encoding of the format: its type, and either the value itself or its position in the file.
 enum class CrateValue : std::uint64_t {};
 
-/// Kinds of specs with their numbers in the format.
+/// Kinds of specs (entries of the scene description) with their numbers in the format.
 enum class SpecKind : std::uint8_t { attribute = 1, prim = 6, root = 7, relationship = 8 };
 
 /// A prim, an attribute or a relationship. The children of a prim are its properties and prims.
@@ -50,9 +50,9 @@ struct CrateSpec {
     std::vector<CrateSpec> children{};
 };
 
-/// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Values go to the file at once, so
-/// that memory holds only one CrateValue for each of them. Tables that have a compressed form in the format are stored
-/// in this form, but not made smaller: they are short compared with the values.
+/// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Each value is written when it is
+/// made, so that memory holds only its CrateValue (8 bytes). For its tables the format requires LZ4. They are written
+/// as LZ4 blocks without compression, because they are short compared with the values.
 class CrateFile {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.
@@ -66,26 +66,26 @@ public:
     CrateValue float64(double value) { return scalar(CrateType::float64, value); }
     /// Value of the specifier `def`, which defines a prim.
     CrateValue defines() { return inlined(CrateType::specifier, 0); }
-    /// Variability of attributes without time samples.
+    /// Value "uniform" of the variability of an attribute, which may then have no time samples.
     CrateValue uniform() { return inlined(CrateType::variability, 1); }
-    /// Writes a value that consists of the bytes of `value`, such as a quaternion.
+    /// Writes a single value that is stored in the file as in memory, such as a quaternion.
     template <class T>
     CrateValue scalar(CrateType type, const T& value) {
         return write_scalar(type, std::as_bytes(std::span<const T, 1>(&value, 1)));
     }
-    /// Writes an array whose elements consist of their bytes.
+    /// Writes an array whose elements are stored in the file as in memory.
     template <class T>
     CrateValue array(CrateType type, std::span<const T> values) {
         return write_array(type, values.size(), std::as_bytes(values));
     }
     CrateValue token_array(std::span<const std::string> texts);
     CrateValue token_vector(std::span<const std::string> texts);
-    /// List edit of USD that puts the token `text` before the tokens of weaker layers (files with lower priority).
+    /// Returns a USD list edit with one token, which goes before the list of weaker layers (files with lower priority).
     CrateValue prepended_token(std::string_view text);
-    /// Target of a relationship or of a connection.
+    /// Returns a list edit with the path that a relationship or a connection points to.
     CrateValue target(std::string_view path);
     CrateValue times(std::span<const double> times);
-    /// Time samples of an attribute. `times` comes from times() and has as many times as `values` has values.
+    /// Returns the time samples of an attribute. `times`: result of times() with as many times as `values` has entries.
     CrateValue time_samples(CrateValue times, std::span<const CrateValue> values);
     /// Reads an array back from the file. T must be the type with which the array was written.
     template <class T>
@@ -95,7 +95,8 @@ public:
         end_read();
         return values;
     }
-    /// Completes the file. `root` has the kind SpecKind::root. The fields that list children are added.
+    /// Completes the file. `root`: the whole scene, of kind SpecKind::root. Its fields "properties" and "primChildren"
+    /// are added here, not by the caller.
     void close(CrateSpec root);
 
 private:
@@ -114,7 +115,7 @@ private:
     void align();
     CrateValue write_scalar(CrateType type, std::span<const std::byte> bytes);
     CrateValue write_array(CrateType type, std::size_t count, std::span<const std::byte> bytes);
-    /// Returns the number of elements of an array. The next bytes read are those of the elements.
+    /// Moves the reading position to the elements of an array, and returns their number. Call end_read after reading.
     std::uint64_t begin_read(CrateValue array);
     void read(std::span<std::byte> bytes);
     void end_read();

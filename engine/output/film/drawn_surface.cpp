@@ -11,19 +11,19 @@ namespace skerry {
 
 namespace {
 
-// Colours of all quantities, of bodies and of colliders (sRGB). The first two lists are those of stress and of bodies
-// on pages (player/data/page_colors.js).
+// Colours as 0xRRGGBB (sRGB): of a quantity from 0 to its top value, of bodies by number, and of colliders. `ramp` and
+// `body_colors` equal the colours of stress and of bodies on web pages (player/data/page_colors.js).
 constexpr std::uint32_t ramp[] = {0x8f8ad6, 0xb27cd0, 0xcf72b8, 0xe56d92, 0xf27f67, 0xf9a64a, 0xf7dd53};
 constexpr std::uint32_t body_colors[] = {0x6fa8dc, 0xe6a15c, 0x7fbf7b, 0xd98cb3, 0xb8a6e0,
                                          0xd8c25f, 0x6cc5c1, 0xe07f72, 0xa9b665, 0x8f9fb8};
 constexpr std::uint32_t collider_color = 0x9fb0c0;
 
-/// Converts a channel in [0, 1] from sRGB.
+/// Converts a colour channel in [0, 1] from sRGB to linear intensity.
 float linear_channel(float value) {
     return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
 
-/// Converts a colour from sRGB with eight bits per channel.
+/// Converts a colour from 0xRRGGBB (sRGB) to linear intensities.
 Color linear(std::uint32_t srgb) {
     const auto channel = [srgb](int shift) { return linear_channel(static_cast<float>(srgb >> shift & 255) / 255); };
     return {channel(16), channel(8), channel(0)};
@@ -37,7 +37,7 @@ std::vector<T> gathered(std::span<const Index> nodes, std::span<const T> of_node
     return values;
 }
 
-/// Area of the surface that belongs to each node [m^2].
+/// Area of the surface that belongs to each node: a third of each adjacent triangle [m^2].
 std::vector<Real> areas_of_nodes(const BodyFrame& body) {
     std::vector<Real> area(body.position.size(), 0);
     for (const auto& triangle : body.surface) {
@@ -48,7 +48,7 @@ std::vector<Real> areas_of_nodes(const BodyFrame& body) {
     return area;
 }
 
-/// Returns the node with an area that is nearest to a point, or `node` if no node has an area.
+/// Returns the node nearest to a point among those on the drawn surface (area > 0), or `node` if there is none.
 std::size_t nearest_drawn(const BodyFrame& body, std::span<const Real> area, const Vec3& point, std::size_t node) {
     Real least = infinity;
     for (std::size_t n = 0; n < area.size(); ++n) {
@@ -60,8 +60,9 @@ std::size_t nearest_drawn(const BodyFrame& body, std::span<const Real> area, con
     return node;
 }
 
-/// Normal forces of the contacts, divided by the area of the surface that belongs to each node [Pa]. The forces on the
-/// core nodes of round bodies, which are not drawn, count at the drawn node nearest to the contact point.
+/// Contact pressure by body and node: sum of the normal forces of the contacts at the node over the area of the surface
+/// that belongs to it [Pa]. Some bodies have contacts at nodes inside the drawn surface (core nodes of round bodies).
+/// Such a force is added at the drawn node nearest to the contact point.
 std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
     std::vector<std::vector<Real>> pressure, area;
     std::map<BodyHandle, std::size_t> number;

@@ -17,18 +17,20 @@ class DrawnSurface {
 public:
     explicit DrawnSurface(const BodyFrame& body);
 
-    /// True if `body`, a later frame of the same body, has the same drawn surface.
+    /// True if `body`, a later frame of the body given to the constructor, still has the same visual surface or still
+    /// has none, so that this object can draw it.
     bool is_drawn(const BodyFrame& body) const;
     /// Corners as vertex numbers, counter-clockwise as seen from outside.
     const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
-    /// Positions or velocities of the vertices, given those of the nodes of `body`.
+    /// Positions (or velocities) of the vertices, given the positions (or velocities) `of_nodes` of the nodes of
+    /// `body`.
     std::vector<Vec3> vectors(const BodyFrame& body, std::span<const Vec3> of_nodes) const;
-    /// Values of a quantity at the vertices, given those at the nodes of `body`.
+    /// Values of the quantity `color` at the vertices, given its values `of_nodes` at the nodes of `body`.
     std::vector<Real> values(const BodyFrame& body, std::span<const Real> of_nodes, FilmColor color) const;
 
 private:
-    const BoundVisual* visual_;  // visual surface in the first frame, only for comparison
-    std::vector<Index> node_;    // node of the body at each vertex if there is no visual surface
+    const BoundVisual* visual_;  // visual surface in the first frame; nullptr: the boundary is drawn
+    std::vector<Index> node_;    // without a visual surface: node of the body at each vertex
     std::vector<std::array<Index, 3>> triangles_;
 };
 
@@ -37,29 +39,30 @@ void require_positive(const std::filesystem::path& file, const char* setting, Re
 
 using Vec3f = std::array<float, 3>;
 
-/// Converts points to floats relative to an origin, so that they are exact at any distance of the body from the origin
-/// of the world.
+/// Subtracts `origin` from the points before converting them to floats, so that rounding errors do not grow with the
+/// distance of a body from the origin of the world.
 std::vector<Vec3f> relative_to(const Vec3& origin, std::span<const Vec3> points);
 Vec3 mean_of(std::span<const Vec3> points);
 
-/// Name of the vertex attribute that colours show, and its unit.
+/// Name and unit of the quantity that colours show; also the name of its vertex attribute.
 struct Quantity {
     const char *name, *unit;
 };
 /// Not for FilmColor::none.
 Quantity quantity_of(FilmColor color);
-/// Values of this quantity by body of the frame and by node. Not for FilmColor::none.
+/// Values of the quantity that `color` shows, for each body of the frame and each of its nodes. `color` must not be
+/// FilmColor::none.
 std::vector<std::vector<Real>> quantity_of_nodes(const Frame& frame, FilmColor color);
-/// Value at the upper end of the colours, unless the user gives one: 99 % of the values above zero are below it.
+/// Default of the value at the upper end of the colours: 99 % of the values above zero are below it.
 inline Real usual_top(const Quantile& values) {
     return values.at(0.99);
 }
 
-/// Red, green and blue, linear.
+/// Linear intensities of red, green and blue, from 0 to 1.
 using Color = Vec3f;
-/// Colour of a value. The colours belong to values from 0 to `top`.
+/// Colour of a value. The colour ramp extends from 0 to `top`.
 Color color_of_value(Real value, Real top);
-/// Content that a frame needs for the colours.
+/// Content with which a frame must be collected for the colours.
 inline FrameContent content_of(FilmColor color) {
     return color == FilmColor::stress ? FrameContent::node_fields : FrameContent::motion;
 }

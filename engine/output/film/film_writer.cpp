@@ -20,7 +20,7 @@ namespace {
     refuse_in(file.string(), "film", field, found, expected);
 }
 
-/// Throws unless a film with these settings can be written to `file`. Returns the file.
+/// Returns `file`. Throws SceneError unless it ends in .usd or .usdc and the settings are valid.
 const std::filesystem::path& checked(const std::filesystem::path& file, const FilmSettings& settings) {
     require_extension(file, {".usd", ".usdc"});
     require_positive(file, "frame_step", settings.frame_step);
@@ -79,7 +79,7 @@ Real FilmWriter::close() {
 
 namespace {
 
-/// Film of a run.
+/// Writes the film of a run. FilmWriter is made in open(), which gets the frame step.
 class FilmOutput final : public Writer {
 public:
     FilmOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)
@@ -112,7 +112,7 @@ private:
     Real color_max_ = 0;
 };
 
-/// State at the end of a run as glTF.
+/// Writes the state at the end of a run as a glTF file.
 class GltfOutput final : public Writer {
 public:
     GltfOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)

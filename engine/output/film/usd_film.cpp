@@ -14,7 +14,8 @@ namespace {
 constexpr const char *looks_path = "/World/Looks/", *vertex_color_path = "/World/Looks/vertex_color";
 using Vec2f = std::array<float, 2>;
 
-/// Characters that a name of USD may have: letters, digits and underscores, but no digit at the beginning.
+/// Returns a name in the form that USD allows: other characters than letters and digits become underscores, and an
+/// underscore is put before a digit at the beginning.
 std::string identifier(std::string_view name) {
     std::string text;
     for (const char c : name) {
@@ -31,7 +32,7 @@ std::string identifier(std::string_view name) {
 UsdFilm::UsdFilm(std::iostream& file, std::filesystem::path folder, const FilmSettings& settings)
     : file_(file), folder_(std::move(folder)), settings_(settings), names_{"Looks", "vertex_color"} {}
 
-/// Returns a name for a prim that no other prim has.
+/// Returns a valid name that no other prim has, made from `name` or, if it is empty, from `name_if_empty`.
 std::string UsdFilm::unique_name(std::string_view name, std::string_view name_if_empty) {
     const std::string base = identifier(name.empty() ? name_if_empty : name);
     std::string unique = base;
@@ -57,7 +58,8 @@ void UsdFilm::put_triangles(Object& object, std::span<const std::array<Index, 3>
     object.mesh.push_back(attribute("faceVertexIndices", "int[]", integers(corners)));
 }
 
-/// Appends a value to a track. `content`: the elements of an array, or the only element of a single value.
+/// Appends a value to a track; a value equal to the previous one is not written again. `content`: the elements if
+/// `is_array`, else one element.
 template <class T>
 void UsdFilm::put(Track& track, std::span<const T> content, CrateType type, bool is_array) {
     const std::span<const std::byte> bytes = std::as_bytes(content);
@@ -88,8 +90,8 @@ void UsdFilm::put_points(Object& object, std::span<const Vec3f> points) {
     put(object.extent, std::span<const Vec3f>(extent), CrateType::vec3_float, true);
 }
 
-/// Puts the vertices relative to the frame of a rigid body. They are put again only if the body has become another
-/// shape, not if they differ by rounding errors.
+/// Writes the vertices of a rigid body in body coordinates. They are replaced in later frames of the film only if one
+/// has moved in body coordinates by more than rounding errors, that is, if the shape has changed.
 void UsdFilm::put_rigid_body(Object& object, const MotionKey& pose, std::span<const Vec3> points) {
     // largest difference that counts as rounding error of a float, as a fraction of the radius of the body
     constexpr Real tolerance = 1e-7;
@@ -134,7 +136,7 @@ void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
         object.rigid_points.clear();
         put_pose(object, origin, Mat3::Identity());
         put_points(object, relative_to(origin, points));
-        // The transform moves with the mean velocity.
+        // The transform of the prim already moves with the mean velocity, so only the rest is written.
         const std::vector<Vec3f> relative = relative_to(mean_of(velocities), velocities);
         put(object.velocities, std::span<const Vec3f>(relative), CrateType::vec3_float, true);
     }
@@ -165,7 +167,8 @@ void UsdFilm::put_collider(const ColliderFrame& collider) {
 }
 
 void UsdFilm::add(const Frame& frame) {
-    // The time of a frame is a whole number of frame steps, up to rounding, unless the run was stopped.
+    // Frame times are multiples of frame_step except for rounding, which is removed here, and except for the last frame
+    // of a stopped run.
     constexpr Real slack = 1e-6;
     const Real steps = frame.time / settings_.frame_step, nearest = std::round(steps);
     const Real time = std::abs(steps - nearest) < slack ? nearest : steps;
@@ -196,7 +199,7 @@ CrateSpec UsdFilm::primvar(CrateSpec spec, const char* interpolation) {
     return spec;
 }
 
-/// Returns an attribute with time samples, or with one value if it is the same in all frames of the object.
+/// Returns an attribute with time samples, or with a single value if all values are equal.
 CrateSpec UsdFilm::animated(const Object& object, const char* name, const char* type,
                             std::span<const CrateValue> values) {
     CrateSpec spec = attribute(name, type, values.front());
@@ -207,7 +210,7 @@ CrateSpec UsdFilm::animated(const Object& object, const char* name, const char* 
     return spec;
 }
 
-/// Adds the colours, and the quantity that they show.
+/// Adds the colours to `mesh`, and the values of the quantity that they show, if any.
 void UsdFilm::put_colors(const Object& object, std::size_t number, CrateSpec& mesh) {
     constexpr const char *name = "primvars:displayColor", *type = "color3f[]";
     const auto written = [&](const std::vector<Color>& colors) {
@@ -234,7 +237,7 @@ void UsdFilm::put_colors(const Object& object, std::size_t number, CrateSpec& me
     mesh.children.push_back(primvar(animated(object, quantity.c_str(), "float[]", object.quantity.values), "vertex"));
 }
 
-/// Adds texture coordinates, and the materials of single triangles.
+/// Adds the texture coordinates of a visual surface, and its materials with the triangles that have them.
 void UsdFilm::put_materials(Object& object, const VisualSurface& surface) {
     if (!surface.texture_corners.empty()) {
         std::vector<Vec2f> points;
@@ -267,7 +270,7 @@ void UsdFilm::put_materials(Object& object, const VisualSurface& surface) {
 /// Hides an object in the frames before it was added and after it was removed. Blender ignores animated visibility, so
 /// the object also gets the size zero.
 void UsdFilm::put_presence(const Object& object, CrateSpec& mesh) {
-    constexpr double before = 1e-3;  // sizes are interpolated, so they change within this fraction of a frame step
+    constexpr double before = 1e-3;  // USD interpolates sizes: the change takes this long [frame steps]
     std::vector<double> times;
     std::vector<bool> present;
     const auto change = [&](double time, bool from, bool to) {
@@ -340,7 +343,8 @@ CrateSpec UsdFilm::shader(std::string name, const char* kind) {
     return spec;
 }
 
-/// Adds a material to `looks_`. `inputs`: shaders from which the material takes its colour, as value of `diffuse`.
+/// Adds a material to `looks_`. `diffuse`: colour of the material, a value or a connection to a shader. `inputs`: the
+/// shaders that `diffuse` needs.
 void UsdFilm::add_material(const std::string& path, CrateSpec diffuse, Real opacity, std::vector<CrateSpec> inputs) {
     CrateSpec surface = shader("surface", "UsdPreviewSurface");
     surface.children.push_back(std::move(diffuse));
@@ -363,7 +367,7 @@ void UsdFilm::add_vertex_color() {
     add_material(path, connected("inputs:diffuseColor", "color3f", path + "/color.outputs:result"), 1, {reader});
 }
 
-/// Returns the path of a material, which is added unless a body already has it.
+/// Returns the path of a material. Adds the material if no body used it before.
 std::string UsdFilm::material_path(const VisualMaterial& material) {
     const auto known = std::ranges::find(materials_, material, &std::pair<VisualMaterial, std::string>::first);
     if (known != materials_.end()) return known->second;

@@ -19,8 +19,9 @@
 namespace skerry {
 
 /// Writes one prim of type Mesh for each body and each collider. Vertices are relative to the transform of the prim, so
-/// that floats are exact enough at any distance from the origin of the world. The transform of a rigid body moves with
-/// it, so its vertices never change. A value that equals that of the previous frame takes 8 bytes.
+/// that the rounding errors of floats do not grow with the distance from the origin of the world. The transform of a
+/// rigid body moves with the body, so its vertices are written again only if its shape changes. A value equal to the
+/// value in the previous frame takes only 8 bytes.
 class UsdFilm {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.
@@ -35,15 +36,14 @@ private:
     /// Values of an attribute in consecutive frames.
     struct Track {
         std::vector<CrateValue> values;
-        std::string bytes;  // content of the last value
+        std::string bytes;  // bytes of the last value, to find out whether the next one differs
     };
     struct Object {
         std::string name;                   // valid and unique name of the prim
-        std::size_t first = 0, frames = 0;  // first frame that shows the object, and number of these frames
+        std::size_t first = 0, frames = 0;  // first frame that shows the object, and number of such frames
         std::vector<CrateSpec> mesh;        // attributes that never change
         std::optional<DrawnSurface> surface;
-        // For a rigid body: the origin of the prim in the frame of the body's mesh, and the vertices relative to this
-        // origin [m].
+        // For a rigid body: origin of the prim in body coordinates, and the vertices relative to this origin [m].
         Vec3 center = Vec3::Zero();
         std::vector<Vec3> rigid_points;
         Track translate, orient, points, velocities, extent, quantity;
@@ -80,17 +80,17 @@ private:
     CrateFile file_;
     std::filesystem::path folder_;
     FilmSettings settings_;
-    std::vector<double> times_;  // time of each earlier frame, as number of frame steps
+    std::vector<double> times_;  // time of each frame added so far [frame steps]
     std::vector<Object> objects_;
     std::set<std::string, std::less<>> names_;
     std::map<BodyHandle, std::size_t> body_object_;
     std::map<ColliderHandle, std::size_t> collider_object_;
     std::vector<CrateSpec> looks_;                                   // materials
     std::vector<std::pair<VisualMaterial, std::string>> materials_;  // materials of visual surfaces, and their paths
-    std::optional<PlanePatch> patch_;                                // displayed part of planes, in world coordinates
+    std::optional<PlanePatch> patch_;  // part of infinite planes to display, in world coordinates
     Quantile quantity_;
     Real top_ = 0;
-    // Written lists of times by first frame and number of frames.
+    // Lists of times that the file already has, by first frame and number of frames, so that objects share them.
     std::map<std::pair<std::size_t, std::size_t>, CrateValue> written_times_;
 };
 

@@ -25,10 +25,10 @@ namespace skerry {
 
 namespace {
 
-// Numbers of the specification of glTF.
+// Constants of glTF: types of components, and uses (targets) of buffer views.
 constexpr int type_float = 5126, type_uint32 = 5125, target_vertices = 34962, target_indices = 34963;
 
-/// Surface with values at its vertices. Vertices are relative to `origin` and `rotation`.
+/// A surface with values at its vertices. A vertex x of `points` has the position origin + rotation x.
 struct GltfMesh {
     std::string name;
     Vec3 origin = Vec3::Zero();  // [m]
@@ -37,10 +37,10 @@ struct GltfMesh {
     std::vector<std::array<Index, 3>> triangles;
     std::vector<float> values;              // values of the coloured quantity by vertex; empty if there is none
     const VisualSurface* visual = nullptr;  // surface with texture coordinates and materials; nullptr if there is none
-    Color color{};                          // colour of triangles without another colour
+    Color color{};                          // colour of triangles without a material or values
 };
 
-/// Mean normal of the triangles at each vertex, weighted by area.
+/// Unit normal at each vertex: mean of the normals of its triangles, weighted by area.
 std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
     const auto point = [&](Index vertex) {
         return Eigen::Vector3f(mesh.points[static_cast<std::size_t>(vertex)].data());
@@ -52,7 +52,7 @@ std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
     }
     std::vector<Vec3f> normals;
     for (const Eigen::Vector3f& total : sum) {
-        // glTF requires unit vectors, also at vertices of triangles without area.
+        // glTF requires unit vectors. A vertex at which all triangles are flat gets an arbitrary one.
         const Eigen::Vector3f unit =
             total.norm() > 0 ? Eigen::Vector3f(total / total.norm()) : Eigen::Vector3f::UnitZ();
         normals.push_back({unit.x(), unit.y(), unit.z()});
@@ -107,13 +107,13 @@ public:
 private:
     static void pad(std::string& bytes, char with) { bytes.append((4 - bytes.size() % 4) % 4, with); }
 
-    /// Appends an object to a list of the file, and returns its number in the list.
+    /// Appends an object to the JSON array `list` of the file, and returns its index there.
     std::size_t append(const char* list, Json object) {
         json_[list].push_back(std::move(object));
         return json_[list].size() - 1;
     }
 
-    /// Appends bytes to the binary part, and returns the number of the view of these bytes.
+    /// Appends bytes to the binary part, and returns the index of the new buffer view. `target`: its use, or 0.
     std::size_t view(std::string_view bytes, int target) {
         pad(binary_, '\0');
         Json view = object_of({{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}});
@@ -122,7 +122,7 @@ private:
         return append("bufferViews", std::move(view));
     }
 
-    /// Appends an array, and returns the number of its accessor.
+    /// Appends an array with a new buffer view and accessor, and returns the index of the accessor.
     template <class T>
     std::size_t array(const std::vector<T>& values, const char* type, int component, int target) {
         const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
@@ -136,12 +136,12 @@ private:
         const bool textured = mesh.visual != nullptr && !mesh.visual->texture_corners.empty();
         VisualPoints vertices{.node = std::vector<Index>(mesh.points.size()), .texture_point = {}};
         if (textured) {
-            vertices = split_at_seams(*mesh.visual);  // a vertex of glTF has one texture point
+            vertices = split_at_seams(*mesh.visual);  // because a vertex of glTF has only one texture point
         } else {
             std::iota(vertices.node.begin(), vertices.node.end(), 0);
             vertices.triangles = mesh.triangles;
         }
-        std::map<Index, std::vector<std::uint32_t>> corners;  // by material
+        std::map<Index, std::vector<std::uint32_t>> corners;  // corners of the triangles of each material
         for (std::size_t t = 0; t < vertices.triangles.size(); ++t)
             for (const Index corner : vertices.triangles[t])
                 corners[material_of(mesh, t)].push_back(static_cast<std::uint32_t>(corner));
@@ -188,13 +188,15 @@ private:
         return all;
     }
 
-    /// Material of a triangle: number in the visual surface, or no_index.
+    /// Material of a triangle: index in VisualSurface::materials, or no_index if the surface has no materials or shows
+    /// values.
     Index material_of(const GltfMesh& mesh, std::size_t triangle) const {
         const bool has_materials = mesh.visual != nullptr && !mesh.visual->material.empty() && mesh.values.empty();
         return has_materials ? mesh.visual->material[triangle] : no_index;
     }
 
-    /// Name of the attribute of the coloured quantity. Such names begin with an underscore and are upper-case.
+    /// Name of the vertex attribute of the coloured quantity. In glTF, names of additional attributes must begin with
+    /// an underscore; upper case is usual.
     std::string attribute_name() const {
         std::string name = std::string("_") + quantity_of(color_).name;
         std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -224,8 +226,8 @@ private:
         return append("materials", std::move(entry));
     }
 
-    /// Appends an image to the file, and returns the number of its texture. Returns nothing if the file is no PNG or
-    /// JPEG image, since glTF has no others.
+    /// Appends an image to the file, and returns the number of its texture. Returns nullopt if the file is not a PNG or
+    /// JPEG image; glTF allows only these two.
     std::optional<std::size_t> texture_number(const std::filesystem::path& image) {
         std::ifstream in(image, std::ios::binary);
         const std::string bytes{std::istreambuf_iterator<char>(in), {}};

@@ -1,4 +1,4 @@
-// The function of jobs/ranks/mpi_ranks.h in a program without MPI.
+// Replaces start_mpi() of jobs/ranks/mpi_ranks.h in a program that is built without MPI.
 #include "engine/base/complaint.h"
 #include "jobs/ranks/mpi_ranks.h"
 

@@ -189,12 +189,12 @@ World& RunRanks::divide(Scene& scene, OwnerMap owners) {
     scene_ = &scene;
     if (!several()) return scene.world;
     part_.emplace(std::move(scene.world));
-    of_first({});  // so that no rank waits for a rank that has failed
+    of_first({});  // throws on all ranks if one has failed; distribute() would wait for that rank
     divided_ = true;
     try {
         distribute(*part_, *ranks_, {.map = owners});
     } catch (const SceneError&) {
-        divided_ = false;  // all ranks have this error
+        divided_ = false;  // distribute() throws this error on all ranks
         throw;
     }
     return *part_;
@@ -202,7 +202,7 @@ World& RunRanks::divide(Scene& scene, OwnerMap owners) {
 
 World* RunRanks::whole() {
     if (several() && !is_gathered_) {
-        { const World old = std::move(scene_->world); }  // frees its memory
+        { const World old = std::move(scene_->world); }  // frees the memory of the last gathered world
         std::optional<World> world = gathered(*part_);
         if (world) scene_->world = std::move(*world);
         is_gathered_ = true;

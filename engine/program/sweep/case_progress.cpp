@@ -12,8 +12,8 @@ namespace skerry {
 
 namespace {
 
-constexpr double bar_interval = 0.1;      // [s]
-constexpr double first_line_after = 1;    // [s]
+constexpr double bar_interval = 0.1;      // time between two updates of the bar [s]
+constexpr double first_line_after = 1;    // wall time of the first line, and shortest time between two lines [s]
 constexpr double longest_interval = 600;  // longest time between two lines [s]
 
 }  // namespace

@@ -37,7 +37,8 @@ public:
         const int number = sigtimedwait(&held_, nullptr, &patience);
         return number > 0 ? number : 0;
     }
-    /// Restores the signal mask that was set before the pool was created. Child processes call this function.
+    /// Restores the signal mask that was set before the pool was created. A child process calls this function, so that
+    /// signals end it.
     void let_go() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
 
 private:

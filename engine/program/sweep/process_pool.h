@@ -10,11 +10,11 @@
 namespace skerry {
 
 struct PoolEnd {
-    // Failed jobs. The text describes how the process of the job ended.
+    // Numbers of the jobs that failed before any signal, and texts that describe how their processes ended.
     std::vector<std::pair<int, std::string>> lost;
-    std::vector<int> stopped;  // jobs that were running when a signal ended the pool
+    std::vector<int> stopped;  // jobs that ended with an error after a signal had ended the pool
     int done = 0;              // number of jobs that returned 0
-    int signal = 0;            // signal that ended the pool; 0: none
+    int signal = 0;            // last signal that the pool received; 0: none
 };
 
 /// Functions that the pool calls.
@@ -27,10 +27,10 @@ struct PoolCalls {
     FunctionRef<void(int, int)> show;
 };
 
-/// Runs the jobs 0 to `count` - 1 in this order, at most `at_once` of them at the same time. After a first SIGINT or
-/// SIGTERM no more jobs start, and the running jobs get SIGTERM. A second signal kills the running jobs. If this
-/// process ends, for whatever reason, the system kills its jobs. No other thread may run during the call. Throws
-/// std::system_error if not even one process can be created.
+/// Starts the jobs 0 to `count` - 1 in this order, at most `at_once` of them at the same time. After a first SIGINT or
+/// SIGTERM no more jobs start, and the running jobs get SIGTERM. A second signal kills the running jobs. If the calling
+/// process ends, for whatever reason, the system kills its jobs. No other thread may run during the call, because the
+/// jobs are started by fork(). Throws std::system_error if not even one process can be created.
 PoolEnd run_in_processes(int count, int at_once, const PoolCalls& calls);
 
 }  // namespace skerry

@@ -21,8 +21,8 @@ struct CaseJob {
 /// - exit_failed after any other failure, which leaves no result file.
 int run_case(const CaseJob& job);
 
-/// Paths of the file for the time series of the probes of a case. The file has the unfinished name until the run has
-/// ended.
+/// Final and temporary path of the file for the time series of the probes of a case. The file has the temporary path
+/// until the run has ended.
 std::filesystem::path series_file(const std::filesystem::path& folder, int index);
 std::filesystem::path unfinished_series_file(const std::filesystem::path& folder, int index);
 

@@ -47,8 +47,8 @@ void require_within(const Share& share, const std::string& who) {
                "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
 }
 
-/// Returns the share from the rank of this process among the jobs of a SLURM array. The job numbers of an array may
-/// start with any number and have a constant stride.
+/// Returns the share of this process if it is a job of a SLURM array, otherwise a share with all cases. The job numbers
+/// of an array may start with any number and have a constant stride.
 Share array_share(const Variables& variables) {
     const std::optional<int> id = variables.number("SLURM_ARRAY_TASK_ID");
     if (!id) return {};
@@ -70,8 +70,8 @@ Share array_share(const Variables& variables) {
 
 Share task_share(const Environment& environment) {
     const Variables variables(environment);
-    // The launchers are sorted from the innermost to the outermost, because an outer launcher may have started an inner
-    // one.
+    // The first launcher that has set its variables counts. Launchers that may be started by another launcher come
+    // first, because a process inherits the variables of both.
     struct Launcher {
         const char *rank, *of;
     };

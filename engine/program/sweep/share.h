@@ -13,7 +13,7 @@ struct Share {
     // Names of the options or environment variables that define the share. If the text is empty, the process runs all
     // cases.
     std::string said_by;
-    // Number of cores for this process according to its launcher. Empty if the system decides.
+    // Number of cores that the launcher grants this process. Without a value the caller chooses the number.
     std::optional<int> cores;
 
     bool has(int index) const { return index % of == rank; }
@@ -23,12 +23,14 @@ struct Share {
 using Environment = std::function<const char*(const char*)>;
 
 /// Returns the rank of this process among the tasks that mpirun (Open MPI, or the PMI of MPICH and Intel MPI) or srun
-/// has started. A batch script of SLURM is one process, regardless of the number of tasks that it may start.
+/// has started; rank 0 of 1 without them. A batch script of SLURM is one process, regardless of the number of tasks
+/// that it may start.
 Share task_share(const Environment& environment);
 
 /// Returns the share of this process.
 /// - If `rank` and `of` are given, these define the share.
-/// - Otherwise the share combines the position in a SLURM array with task_share().
+/// - Otherwise the tasks of all jobs of a SLURM array are numbered one after the other:
+/// rank = (rank of the job) * (number of tasks of a job) + (rank from task_share()).
 ///
 /// Throws SceneError for values that are not numbers or are inconsistent.
 Share share_of(std::optional<int> rank, std::optional<int> of, const Environment& environment);

@@ -47,7 +47,7 @@ std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
 std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
     std::vector<int> left;
     int others = 0;
-    std::string first;  // description of the first file that holds the result of another case
+    std::string first;  // description of the first file in the state `other`
     for (const int index : mine) {
         const CaseFile file = plan.read(index);
         if (file.state == CaseFileState::other && others++ == 0)
@@ -154,7 +154,7 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     return run;
 }
 
-/// True if none of the cases `mine` failed, was refused or has warnings.
+/// True if no case of `mine` that has a result failed, was refused or has warnings.
 bool all_good(const SweepPlan& plan, const std::vector<int>& mine) {
     return std::ranges::all_of(mine, [&](int index) {
         const CaseFile file = plan.read(index);

@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-/// Sets the value of a key of a scene.
+/// Sets the value at `place` in `json`, the document of a scene. Errors name `of`, the location in the file of cases.
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)
@@ -19,7 +19,8 @@ void try_place(const Place& of, const std::string& place, const Json& value, con
     called_at(of, [&] { assign(place + "=" + value.dump(), scene, json); });
 }
 
-/// Throws SceneError if none of the first cases gives a readable scene, because then the sweep itself is wrong.
+/// Throws SceneError if none of the first hundred cases gives a readable scene. The fault is then probably in the
+/// sweep, not in single cases.
 void require_a_readable_case(const SweepPlan& plan) {
     const SweepFile& file = plan.file;
     constexpr int most_tried = 100;
@@ -39,8 +40,9 @@ void require_a_readable_case(const SweepPlan& plan) {
         .refuse_inner(SceneError("no case gives a valid scene; the first error is in " + first));
 }
 
-/// Tests the assignments of the sweep on the scene: throws SceneError if a place does not exist in the scene. For a
-/// list every case is tested, otherwise only the first case.
+/// Throws SceneError if an assignment of the sweep names a place that does not exist in the scene. In a list each case
+/// may set other places, so that every case is tested. In all other sweeps all cases set the same places, and the first
+/// case is enough.
 void require_places(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;

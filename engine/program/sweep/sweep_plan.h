@@ -13,7 +13,7 @@ struct SweepPlan {
     SweepFile file;
     Cases cases;
     std::filesystem::path folder;     // folder for the result files
-    std::vector<std::string> hashes;  // hash of each case
+    std::vector<std::string> hashes;  // hash of each case, see CaseHasher
 
     CaseJob job(int index, bool probes) const;
     CaseFile read(int index) const;

@@ -23,11 +23,11 @@ Indices: TypeAlias = NDArray[np.int32]
 
 class Problem:
     """A local contact problem u = W r + q with relative velocities u and impulses r, which have the components (normal,
-    tangent 1, tangent 2) for each contact. W is symmetric and stored in compressed rows of blocks. A problem cannot be
-    changed.
+    tangent 1, tangent 2) for each of the c contacts. W is symmetric and stored in compressed rows of z blocks. A
+    problem cannot be changed.
 
-    row_offset: number of the first block of each row, and the number of all blocks, shape (c + 1,).
-    column: column of each block, shape (z,), ascending in each row; each row has its diagonal block.
+    row_offset: index of the first block of each block row, then z, shape (c + 1,).
+    column: block column of each block, shape (z,), ascending in each row; each row must have its diagonal block.
     block: blocks of W, shape (z, 3, 3) [1/kg].
     q: relative velocities without impulses, shape (c, 3) [m/s].
     mu: friction coefficient of each contact, shape (c,), or one for all.
@@ -74,8 +74,8 @@ class Problem:
         name: str = "",
         description: str = "",
     ) -> Problem:
-        """Problem of a sparse matrix of SciPy, such as scipy.sparse.bsr_array, of the shape (3 c, 3 c). q: shape (c, 3)
-        or (3 c,) [m/s]. mu: shape (c,), or one for all."""
+        """Makes a problem from a sparse matrix W of SciPy, such as scipy.sparse.bsr_array, of the shape (3 c, 3 c). q:
+        shape (c, 3) or (3 c,) [m/s]. mu: shape (c,), or one value for all contacts."""
         require_attributes(W, "W", "a sparse matrix of SciPy", "tobsr")
         blocks = W.tobsr(blocksize=(3, 3))
         rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
@@ -90,8 +90,8 @@ class Problem:
         name: str = "",
         description: str = "",
     ) -> Problem:
-        """Problem of a matrix of the shape (3 c, 3 c). Blocks of zeros are left out. The other arguments are those of
-        from_bsr()."""
+        """Makes a problem from a dense matrix W of the shape (3 c, 3 c). Blocks of zeros are left out. The other
+        arguments are those of from_bsr()."""
         matrix = real_array(W, "W", ("3 c", "3 c"))
         _require_square(matrix.shape)
         count = len(matrix) // 3
@@ -122,23 +122,23 @@ class Problem:
 
     @property
     def name(self) -> str:
-        """Name of the problem; of a file, its name without the extension."""
+        """Name of the problem. For a problem from a file: name of the file without the extension."""
         return str(self._core.name)
 
     @property
     def description(self) -> str:
-        """Description in the file."""
+        """Description given to Problem() or read from the file."""
         return str(self._core.description)
 
     @property
     def row_offset(self) -> Indices:
-        """Number of the first block of each row, and the number of all blocks, shape (c + 1,), read-only."""
+        """Index of the first block of each block row, then the number of all blocks, shape (c + 1,), read-only."""
         array: Indices = self._array("row_offset")
         return array
 
     @property
     def column(self) -> Indices:
-        """Column of each block, shape (z,), read-only."""
+        """Block column of each block, shape (z,), read-only."""
         array: Indices = self._array("column")
         return array
 
@@ -166,11 +166,12 @@ class Problem:
         return sparse.bsr_array((self.block, self.column, self.row_offset), shape=(3 * len(self), 3 * len(self)))
 
     def part_of(self, contacts: ArrayLike) -> Problem:
-        """The problem of some contacts, in ascending order (j,), in which all other impulses are zero."""
+        """Problem of the given contacts only, as if the impulses of all others were zero. contacts: ascending indices,
+        shape (j,)."""
         return Problem._of(_core.part_of(self._core, index_array(contacts, "contacts", ("j",))))
 
     def velocity(self, reaction: ArrayLike) -> Reals:
-        """Relative velocities u = W r + q of impulses r (c, 3) [N s], shape (c, 3) [m/s]."""
+        """Relative velocities u = W r + q that result from the impulses r (c, 3) [N s], shape (c, 3) [m/s]."""
         impulse = self._reaction(reaction)
         result = self.q.copy()
         rows = np.repeat(np.arange(len(self)), np.diff(self.row_offset))
@@ -212,7 +213,7 @@ class Solution:
 
     reaction: impulses of the contacts, shape (c, 3) [N s].
     converged: True if `error` is at most the tolerance.
-    iterations: iterations of the region that needed most.
+    iterations: largest number of iterations of a region.
     error: relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|) with the natural map residual e.
     error_absolute: norm |e| of the natural map residual.
     error_over_q: relative error |e| / |q|.
@@ -220,7 +221,7 @@ class Solution:
     regions: number of independent regions.
     largest_region: number of contacts of the largest region.
     unconverged: number of regions that reached the iteration limit.
-    seconds: computing time of the solve; a short solve is repeated [s].
+    seconds: computing time of the solve; for a short solve, the median of several solves [s].
     """
 
     reaction: Reals
@@ -242,7 +243,7 @@ class Solution:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProblemError:
-    """Errors of given impulses.
+    """Errors of given impulses as solutions of a contact problem.
 
     absolute: norm |e| of the natural map residual e.
     relative: relative error |e| / max(|q|, |r|, |u|).
@@ -264,11 +265,11 @@ class StepProblem:
     time: time at the start of the step [s].
     step_size: length of the step [s].
     problem: the problem, without contacts that no impulse can move. Joints, ties and nodes on rollers are eliminated:
-        W and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with
-        friction or a prescribed length keep their impulses of the step, whose effect is part of q.
+        W and q include their effect. Slides, motors, limits, passive forces, and cables with friction or a prescribed
+        length are replaced by the impulses that they exert in the step, whose effect is part of q.
     impulse: impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s].
-    contact: number of each contact in World.contacts, shape (c,).
-    region: region of each contact, shape (c,).
+    contact: index of each contact in World.contacts, shape (c,).
+    region: number of the region of each contact, shape (c,).
     """
 
     step: int
@@ -294,10 +295,11 @@ def solve(
     method: "automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr" or "pcg_pr".
     friction: Coulomb's "cone", or its four-sided approximation "pyramid", to which the errors then refer.
     tolerance: upper bound on Solution.error.
-    max_iterations: limit for each region.
-    relaxation: factor of methods that sweep, > 0 and < 2.
+    max_iterations: limit of the number of iterations for each region.
+    relaxation: factor of the change of an impulse, for methods that sweep over the contacts, > 0 and < 2.
 
-    SceneError: a setting is out of its range. Solution.converged is True if the tolerance was reached."""
+    SceneError: a setting is out of its range. A region that reaches max_iterations is no error, see
+    Solution.converged."""
     settings = ProblemSettings(
         method=method, friction=friction, tolerance=tolerance, max_iterations=max_iterations, relaxation=relaxation
     )
@@ -305,14 +307,14 @@ def solve(
 
 
 def problem_error(problem: Problem, reaction: ArrayLike) -> ProblemError:
-    """Errors of given impulses (c, 3) [N s], as in FCLIB and Siconos."""
+    """Errors of given impulses (c, 3) [N s], defined as in FCLIB and Siconos."""
     core = checked(problem, "problem", Problem)._core
     return ProblemError(**_core.problem_error(core, problem._reaction(reaction)))
 
 
 @contextmanager
 def contact_problems(world: Any, every: int) -> Iterator[list[StepProblem]]:
-    """Collects the problems of the steps of a world."""
+    """Collects the contact problems of steps whose number is a multiple of `every`, until the `with` block ends."""
     world._core.require_between_steps()
     if every == 0:
         raise scene_error("contact_problems", "every", "0", "a number of steps >= 1")
@@ -349,7 +351,7 @@ def _problem_of_blocks(
     name: str,
     description: str,
 ) -> Problem:
-    """Problem of blocks in any order, of which several may have the same place. Missing diagonal blocks become zero."""
+    """Problem from blocks in any order. Blocks of one row and column are added; missing diagonal blocks become zero."""
     _require_square(shape)
     count = shape[0] // 3
     place = np.concatenate([rows.astype(np.int64) * count + columns, np.arange(count) * (count + 1)])

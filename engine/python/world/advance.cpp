@@ -10,8 +10,8 @@ namespace skerry::python {
 
 namespace {
 
-/// Decides when the next signal must be handled. Throws the exception that a handler raised, such as
-/// KeyboardInterrupt.
+/// Handles pending signals such as Ctrl-C, at most every 20 ms. Throws the exception that a signal handler raised, such
+/// as KeyboardInterrupt.
 class SignalWatch {
 public:
     void check() {
@@ -28,8 +28,9 @@ private:
     Clock::time_point checked_ = Clock::now();
 };
 
-/// Has a world call Python functions with the report and the contact problem of each step until the end of the scope.
-/// The world must not hold them longer: Python's garbage collector would not see the references.
+/// Makes a world call Python functions with the report and the contact problem of each step, until the end of the
+/// scope. Functions stored for longer could form a reference cycle with the world, which Python's garbage collector
+/// would not find.
 class WatchScope {
 public:
     WatchScope(World& world, const nb::object& watch, const nb::object& take, std::uint64_t every) : world_(world) {
@@ -57,9 +58,9 @@ private:
     World& world_;
 };
 
-/// Advances without the GIL. `check` is None or is called before each attempt at a step, and ends the call if it
-/// returns False. `watch` is None or is called after each committed step. `take` is None or is called with the problem
-/// of each step whose number is a multiple of `every`.
+/// Advances without the GIL. `check` is None or is called before each attempt at a step; the call of advance() ends if
+/// `check` returns False. `watch` is None or is called after each committed step. `take` is None or is called with the
+/// contact problem of each step whose number is a multiple of `every`.
 nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb::object& watch, const nb::object& take,
                  std::uint64_t every) {
     Use use(object);
@@ -67,7 +68,7 @@ nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb
     const Settings& settings = world.settings();
     if (settings.backend != Backend::serial && settings.threads != 1) Use::note_threads();
     std::optional<WatchScope> scope;
-    if (object.depth == 1) scope.emplace(world, watch, take, every);  // advance() refuses a nested call
+    if (object.depth == 1) scope.emplace(world, watch, take, every);  // advance() refuses a nested call (depth > 1)
     const StepReport report = without_gil([&] {
         SignalWatch signals;
         return world.advance(dt, [&](const StepReport& so_far) {
@@ -110,8 +111,8 @@ void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none(),
              nb::arg("take").none(), nb::arg("every"))
         .def("relax", &relax_world)
-        // World::watch_steps throws during advance(). It has no other effect, because WatchScope has removed the
-        // function that it would replace.
+        // Throws during advance(), as World::watch_steps does. At other times nothing changes, because no function is
+        // registered outside of WatchScope.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))
         .def("trace_text", guarded([](World& world) {

@@ -32,7 +32,7 @@ BodyHandle add_body(WorldObject& object, const Mesh& mesh, const MaterialHandle&
     return without_gil([&] { return object.world.add_body(mesh, settings); });
 }
 
-/// Adds a sphere, a capsule, a cylinder or a body of a surface.
+/// Adds a rigid body: a sphere, a capsule, a cylinder or the inside of a closed surface.
 BodyHandle add_rigid_body(WorldObject& object, nb::handle shape, const MaterialHandle& material, nb::handle given) {
     Use use(object);
     require_no_views(object, "add_body");

@@ -54,7 +54,7 @@ nb::dict settings_of_cavity(World& world, const CavityHandle& cavity) {
     nb::dict values;
     values["body"] = settings.body;
     values["faces"] = array_of<Index>(std::span<const Face>(*settings.faces), {3});
-    const char* const names[] = {"pressure", "gas", "liquid"};  // names in the order of the alternatives
+    const char* const names[] = {"pressure", "gas", "liquid"};  // in the order of the alternatives of `filling`
     values[names[settings.filling.index()]] =
         std::visit([](const auto& filling) { return object_of(filling); }, settings.filling);
     values["volume"] = settings.volume;

@@ -1,4 +1,4 @@
-// The parts of the class World of the extension module, each in a file of its own.
+// Functions that bind groups of methods of the class World of the extension module.
 #pragma once
 
 #include "engine/python/world_object.h"
@@ -31,7 +31,8 @@ void bind_views(WorldClass& type);
 void bind_visuals(WorldClass& type);
 void bind_results(WorldClass& type);
 
-/// Binds the functions that all views have in common. `list`: name of the function that lists all objects.
+/// Binds the methods that all kinds of objects with an ObjectView have in common. `list`: name of the Python method
+/// that returns the handles of all objects of the kind.
 template <class HandleType>
 void bind_view(WorldClass& type, const char* list) {
     using View = ObjectView<HandleType>;
@@ -44,14 +45,14 @@ void bind_view(WorldClass& type, const char* list) {
              }));
 }
 
-/// The members of a report by name.
+/// Dictionary of the members of a report or another struct, with their names as keys.
 nb::dict values_of(const StepReport& report);
 nb::dict values_of(const StepProblem& step);
 nb::dict values_of(const WorldReport& report);
 nb::dict values_of(const Energy& energy);
 nb::dict values_of(const DynamicsEstimate& estimate);
 
-/// The handle as a Python object; None if it names no object.
+/// The handle as a Python object; None for a default-constructed handle, which names no object.
 template <class HandleType>
 nb::object object_of(const HandleType& handle) {
     return handle == HandleType{} ? nb::none() : nb::cast(handle);

@@ -27,7 +27,7 @@ const char* name_of_status(StepStatus status) {
     return "?";
 }
 
-/// A row number or another index; None if there is none.
+/// An index as a Python number; None for no_index.
 nb::object index_or_none(Index index) {
     return index == no_index ? nb::none() : nb::cast(index);
 }
@@ -122,7 +122,7 @@ nb::object value_of(const std::string& text) {
     return nb::cast(text);
 }
 
-/// Calls visit(name, member) for each member of StepReport.
+/// Calls visit(name, pointer to member) for each member of StepReport.
 void for_each_member(auto&& visit) {
     visit("status", &StepReport::status);
     visit("body", &StepReport::body);
@@ -190,7 +190,7 @@ void add_counters(const RunCounters& counters, nb::dict& values) {
     values["start_gap_violation"] = counters.start_gap_violation;
 }
 
-/// Adds the lists of the report, and the counts of objects.
+/// Adds the lists of the report, and the numbers of bodies, nodes and other objects in the world.
 void add_objects(const WorldReport& report, nb::dict& values) {
     values["asleep"] = report.asleep;
     values["bodies"] = report.bodies;
@@ -234,10 +234,11 @@ nb::dict values_of(const DynamicsEstimate& estimate) {
 }
 
 nb::dict values_of(const StepReport& report) {
-    // Most values of most reports are those of an empty report, and copying its dictionary is faster than making
-    // another one. The dictionary and its keys are not freed, as the interpreter may end before.
+    // Most members of a report usually have their default values. Copying the dictionary of a default report is
+    // therefore faster than making a new dictionary. The copied dictionary and its keys are never freed, because static
+    // objects are destroyed after the interpreter has ended.
     static const StepReport empty;
-    static std::vector<PyObject*> names;  // key of each member
+    static std::vector<PyObject*> names;  // key of each member, in the order of for_each_member
     static PyObject* const empty_values = [] {
         nb::dict values;
         values["message"] = "";

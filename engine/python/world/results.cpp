@@ -9,7 +9,7 @@ namespace skerry::python {
 
 namespace {
 
-/// Places of handles in a list of all objects of a kind; -1 for a handle without object.
+/// Converts handles to indices in the list of all bodies or colliders; -1 for a handle that names no object.
 template <class HandleType>
 class Places {
 public:
@@ -22,7 +22,7 @@ public:
     }
 
 private:
-    std::unordered_map<std::uint32_t, Index> place_;  // by slot alone: handles in results are live or have no slot
+    std::unordered_map<std::uint32_t, Index> place_;  // key: slot, without generation, as results have no stale handles
 };
 
 using Triple = std::array<Real, 3>;
@@ -43,14 +43,15 @@ struct ContactRow {
     Index region = no_index;
 };
 
-/// A point of a surface in the memory layout of hit_dtype in skerry/_results.py.
+/// A hit of a ray, or a nearest point of a surface, in the memory layout of hit_dtype in skerry/_results.py. Without a
+/// hit the distance is infinite.
 struct HitRow {
     Index body = no_index, collider = no_index, triangle = no_index;
     Triple barycentric{}, point{}, normal{};
     Real distance = infinity;
 };
 
-/// The bytes of the rows, as an array of uint8.
+/// The bytes of the rows as an array of uint8. skerry/_results.py views them with the dtype of the rows.
 template <class Row>
 nb::ndarray<nb::numpy, std::uint8_t> bytes_of(const std::vector<Row>& rows) {
     const std::span<const Row> all(rows);
@@ -109,7 +110,7 @@ nb::list force_pairs(World& world) {
     return pairs;
 }
 
-/// Handles in a list, by their kind.
+/// Filter of a query. `except`: handles of bodies and colliders that the query ignores.
 QueryFilter filter_of(bool bodies, bool colliders, std::uint32_t groups, const nb::list& except) {
     QueryFilter filter{.bodies = bodies, .colliders = colliders, .groups = groups};
     for (const nb::handle handle : except) {
@@ -121,7 +122,7 @@ QueryFilter filter_of(bool bodies, bool colliders, std::uint32_t groups, const n
     return filter;
 }
 
-/// One row for each result of `find(number)`, which is called without the GIL.
+/// Calls find(number) without the GIL for the numbers 0 to count - 1, and returns a HitRow for each.
 template <class Find>
 nb::ndarray<nb::numpy, std::uint8_t> hits(const World& world, std::size_t count, Find&& find) {
     std::vector<HitRow> rows(count);

@@ -9,7 +9,7 @@ namespace {
 
 using Tensors = nb::ndarray<nb::numpy, Real>;
 
-/// A NumPy array (k, 3, 3). Eigen stores matrices by columns.
+/// A NumPy array (k, 3, 3). Matrices are transposed first, because Eigen stores columns and NumPy rows contiguously.
 Tensors array_of(std::vector<Mat3>&& matrices) {
     for (Mat3& matrix : matrices) matrix.transposeInPlace();
     return python::array_of<Real>(std::span<const Mat3>(matrices), {3, 3});
@@ -19,7 +19,8 @@ Tensors array_of(const std::vector<Real>& values) {
     return python::array_of<Real>(std::span<const Real>(values));
 }
 
-/// Makes a method of WorldObject of a function of World that computes a field of a body. The GIL is released.
+/// Converts a function of World that computes a field of a body to a method of WorldObject, which calls it without the
+/// GIL.
 template <class Result>
 auto field_of(std::vector<Result> (World::*compute)(BodyHandle) const) {
     return [compute](WorldObject& object, const BodyHandle& body) {
@@ -45,7 +46,7 @@ nb::ndarray<nb::numpy, Real> vector_array(const Vec3& vector) {
     return python::array_of<Real>(std::span<const Real>(vector.data(), 3));
 }
 
-/// Bodies or colliders of this name, in the order of the world.
+/// Handles in `all` of the bodies or colliders that have this name, in the order of `all`.
 template <class HandleType>
 std::vector<HandleType> named(const World& world, const std::vector<HandleType>& all, const std::string& name) {
     std::vector<HandleType> found;
@@ -118,7 +119,7 @@ nb::tuple tuple_of(const Twist& twist) {
     return nb::make_tuple(vector_array(twist.velocity), vector_array(twist.angular_velocity));
 }
 
-/// Binds the getters of values that the user sets for an object of the given kind.
+/// Binds the getters of velocities and, for bodies and colliders, of surface properties and collision groups.
 template <class HandleType>
 void bind_given_values(WorldClass& type) {
     type.def("velocity",

@@ -1,4 +1,4 @@
-// Friction and restitution by pair of materials and by place on a body.
+// Friction and restitution of pairs of materials and of parts of the surface of a body.
 #include "skerry/surface.h"
 
 #include "engine/python/read_settings.h"

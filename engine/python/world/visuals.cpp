@@ -14,7 +14,7 @@ namespace skerry::python {
 namespace {
 
 using TexturePoints = nb::ndarray<const Real, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-/// Name, colour, opacity and texture of a material.
+/// Name, colour, opacity and path of the texture image of a material.
 using MaterialTuple = std::tuple<std::string, std::array<Real, 3>, Real, std::string>;
 
 VisualSurface new_visual(const Vectors& nodes, const IndexRows<3>& triangles, const TexturePoints& texture_points,

@@ -1,4 +1,4 @@
-// The classes World and handles of the extension module, and the rules for their use.
+// Binds the classes World and handles of the extension module, and checks their use (threads, fork, views).
 #include "skerry/world.h"
 
 #include <map>

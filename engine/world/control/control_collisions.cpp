@@ -1,4 +1,4 @@
-// Rules for which objects may touch: groups, masks and disabled pairs.
+// Functions that read and change which objects may collide: groups, masks and disabled pairs.
 #include <algorithm>
 
 #include "engine/world/control/control.h"
@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Table rows of the two objects whose collision is switched on or off.
+/// Rows of the two objects of a pair: of BodyTable, and of ColliderTable for `second` if `kind` is `collider`.
 struct RowPair {
     PairKind kind;
     Index first, second;
@@ -34,8 +34,8 @@ void request_overlap_check_of_collider(Model& model, Index collider) {
     if (model.colliders.body[c] != no_index) request_overlap_check(model, model.colliders.body[c]);
 }
 
-/// In the next step all pairs of a body are searched again. Wakes the body, and all bodies that touch it or may touch
-/// it.
+/// Makes the next step search all pairs of a body again, and wakes the body. Sleeping bodies near it wake when pending
+/// edits are completed (ChangedPlaces::wake_near).
 void find_pairs_of(WorldState& world, Index body) {
     const auto b = static_cast<std::size_t>(body);
     world.cache.forget_body(world.model, b);

@@ -24,7 +24,7 @@ namespace {
     refuse("body '" + model.body_records[body].name + "'", field, found, expected, hint);
 }
 
-/// "joints, ties and cables"
+/// Joins names to a text such as "joints, ties and cables".
 std::string sequence_of(const std::vector<const char*>& names) {
     std::string text;
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -66,7 +66,7 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
                       "remove the " + sequence_of(found) + ", change the dynamics, then add them again");
 }
 
-/// Centre of mass and momenta of a free body.
+/// Centre of mass and momenta of a body as a whole.
 struct WholeMotion {
     Vec3 center;                      // centre of mass [m]
     Vec3 momentum, angular_momentum;  // angular momentum is about `center` [kg m/s, kg m^2/s]
@@ -95,8 +95,8 @@ WholeMotion motion_of(const Model& model, std::size_t body) {
     return {center, nodes.momentum, nodes.angular_momentum};
 }
 
-/// Adds a rigid motion to the velocities of an explicit body. Afterwards the momentum and angular momentum of the body
-/// equal `wanted`.
+/// Adds a rigid motion to the node velocities of an explicit body, so that its momentum and its angular momentum about
+/// `wanted.center` become those of `wanted`.
 void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
     const Vec3 center = center_of_nodes(model, body);
     const NodeMotion has = motion_of_nodes(model, body, center);
@@ -108,7 +108,8 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
         model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
-/// Present shape of a body, in the frame of the mesh [m]. The list is empty if the body is not deformed.
+/// Present node positions of a body in the mesh frame, whose pose is `pose` [m]. Empty if no node has moved relative to
+/// `mesh_shape` by more than rounding errors.
 std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const RigidPose& pose,
                                     std::span<const Vec3> mesh_shape) {
     std::vector<Vec3> shape;
@@ -117,7 +118,7 @@ std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const 
         shape.push_back(pose.rotation.transpose() * (x - pose.position));
         most = std::max(most, (shape.back() - mesh_shape[shape.size() - 1]).norm());
     }
-    // rounding error of the fitted pose, relative to the mean edge length
+    // Smaller displacements, divided by the mean edge length, are rounding errors of the fitted pose.
     constexpr Real rounding = 1e-12;
     if (!(most > rounding * model.bodies.mean_edge[body])) shape.clear();
     return shape;
@@ -140,16 +141,16 @@ void require_upright_shape(const Model& model, std::size_t body, std::span<const
                       "advance until the body has recovered, or call reset() first");
 }
 
-/// Appends another row for a body, with the dynamics `next` and without velocity. A rigid body gets the present shape
-/// of the body, other bodies get the shape of the mesh. If the new row has no valid stable step, removes this row again
-/// and throws SceneError.
+/// Appends another row for a body, with the dynamics `next` and without velocity. If `next` is rigid, the row gets the
+/// present shape of the body, otherwise the shape of its mesh. If the new row has no valid stable step, removes this
+/// row again and throws SceneError.
 std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     Model& model = world.model;
     const BodyTable& bodies = model.bodies;
     const BodyRecord record = model.body_records[body];
     const RigidPose pose = pose_of_body(model, body);
     const std::span<const Vec3> shape = model.mesh_shape(body);
-    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // a copy, because appending rows may move `shape`
+    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // appending rows may reallocate `shape`
     std::vector<Vec3> frozen;
     if (next == BodyDynamics::rigid) frozen = deformed_shape_of(model, body, pose, mesh_shape);
     if (!frozen.empty()) require_upright_shape(model, body, frozen);
@@ -191,7 +192,8 @@ void copy_node_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
-/// Copies shape, motion and loads of the body `before` to the body `after`, as far as the dynamics of `after` allow.
+/// Gives the body `after` the surface properties, loads and momenta of the body `before`. Unless `after` is rigid, also
+/// copies node positions and velocities.
 void take_state(WorldState& world, std::size_t before, std::size_t after) {
     Model& model = world.model;
     const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];

@@ -1,4 +1,4 @@
-// Functions that add, remove and change fibres between steps (docs/methods/elasticity.md 2.7).
+// Functions that add, read and change fibres between steps (docs/methods/elasticity.md 2.7).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -22,7 +22,7 @@ std::string title_of_fibres(const Model& model, Index body) {
     return "fibres in body '" + model.body_records[static_cast<std::size_t>(body)].name + "'";
 }
 
-// The parameter `object` of the following functions is the title of the fibres.
+// In the following functions `object` names the fibres in error messages (title_of_fibres).
 
 void require_tension(const std::string& object, const TimeTable& tension) {
     require_table(object, "tension", tension);
@@ -34,8 +34,8 @@ void require_modulus(const std::string& object, const char* field, Real found, c
     if (!(std::isfinite(found) && found >= 0)) refuse(object, field, short_text(found), expected);
 }
 
-/// Throws SceneError if fibres cannot act on a body. With theta < 1 a force that follows the deformation of an implicit
-/// body would add energy to the body.
+/// Throws SceneError if fibres cannot act on a body: on a collider mesh, a rigid body, or an implicit body with
+/// Settings::theta below 1, to which forces that follow the deformation would add energy.
 void require_deforming(const Model& model, std::size_t body, const std::string& object) {
     if (model.bodies.kind[body] != BodyKind::deformable || model.is_rigid(body))
         refuse(object, "body", "a body that does not deform", "an explicit or implicit body");
@@ -73,7 +73,8 @@ void require_directions(const std::vector<Vec3>& direction, std::size_t count, c
                    "a vector that is not zero");
 }
 
-/// Completes a change of fibres: wakes the body, updates the data of force elements and closes the energy balance.
+/// Completes a change of fibres: wakes the body, updates the data of force elements, and starts a new energy balance,
+/// which does not count the energy of the change as an error.
 void note_fibres(WorldState& world, Index body) {
     world.model.wake(static_cast<std::size_t>(body));
     note_forces(world.model);
@@ -166,7 +167,7 @@ FibreSettings Fibres::settings(FibreHandle fibres) const {
     for (auto t = static_cast<std::size_t>(table.tetrahedra[row].begin);
          t < static_cast<std::size_t>(table.tetrahedra[row].end); ++t) {
         settings.tetrahedra.push_back(table.tetrahedron[t]);
-        Vec3 along = Vec3::Zero();  // derivative of the rest position along the fibres
+        Vec3 along = Vec3::Zero();  // fibre direction d: the derivative of the rest position along d is d itself
         for (std::size_t a = 0; a < 4; ++a)
             along += table.slope[t][a] * rest[static_cast<std::size_t>(table.node[t][a])];
         settings.direction.push_back(along);

@@ -156,7 +156,7 @@ std::optional<BodyHandle> second_of(const Model& model, std::size_t joint) {
     return handle_of_body(model, row);
 }
 
-/// Velocity of a point of a body, and angular velocity of the body. Both are zero for the world (`body` is no_index).
+/// Velocity of a point of a body, and angular velocity of the body. Both are zero for a point of the world.
 struct PointVelocity {
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // [m/s], [rad/s]
 };
@@ -178,8 +178,8 @@ bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     return false;
 }
 
-/// Coordinate of a joint as a function of that of its head, the joint at the end of its chain of leaders:
-/// ratio * coordinate of the head + offset.
+/// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset.
+/// OfHead is this relation of a joint to its head, the last joint of its chain of leaders.
 struct OfHead {
     Index head;
     Real ratio = 1, offset = 0;
@@ -194,11 +194,11 @@ OfHead of_head(const JointTable& table, Index joint) {
     return of;
 }
 
-/// Throws SceneError if the joints that mimic each other, directly or through others, have no common position within
-/// their limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
+/// Throws SceneError if the joints that mimics couple to `joint` cannot all be within their limits at once. `field`:
+/// changed setting of `joint`, for the message. `table`: the joints after the change.
 void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
     const OfHead own = of_head(table, static_cast<Index>(joint));
-    Real lower = -infinity, upper = infinity;  // limits of the coordinate of `joint`
+    Real lower = -infinity, upper = infinity;  // range of the coordinate of `joint` that satisfies all limits
     for (std::size_t j = 0; j < table.size(); ++j) {
         const OfHead other = of_head(table, static_cast<Index>(j));
         if (other.head != own.head) continue;
@@ -242,8 +242,8 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.first[row] = first;
     table.second[row] = second;
     table.first_frame[row] = frame_on(model, first, joint.point, axes);
-    // At coordinate 0 the two frames coincide. The frame on the second body is therefore the given frame, moved back by
-    // the coordinate.
+    // At coordinate 0 the two frames coincide. The frame on the second body is therefore the frame on the first body,
+    // moved back by the coordinate.
     if (joint.kind == JointKind::hinge)
         table.second_frame[row] =
             frame_on(model, second, joint.point, Eigen::AngleAxis<Real>(-joint.coordinate, axis) * axes);

@@ -34,7 +34,7 @@ struct LoadRow {
     std::vector<std::array<Index, 3>> face{};
 };
 
-/// Wakes the body that a load acts on, or all bodies.
+/// Wakes the body that a load acts on, or all bodies if `body` is no_index.
 void wake_loaded(Model& model, Index body) {
     if (body == no_index)
         model.wake_all();
@@ -80,7 +80,8 @@ Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
 }
 
-/// Throws SceneError if the list is empty, if a face is not on the surface of the body, or if it appears twice.
+/// Throws SceneError for a round body, which has no mesh faces, for an empty list, and for a face that is not on the
+/// surface of the body or is listed twice.
 void require_faces(std::span<const std::array<Index, 3>> faces, const Model& model, std::size_t body) {
     const std::string object = title_of_load(model, static_cast<Index>(body));
     const BodyRecord& record = model.body_records[body];
@@ -165,7 +166,7 @@ LoadHandle Loads::add(const TractionLoad& load) {
     LoadRow row{
         .kind = LoadKind::traction, .body = body, .vector = load.traction, .area = load.area, .face = load.faces};
     if (load.area == LoadArea::present) {
-        std::vector<Real> faces_at(rest.size(), 0);  // number of faces of each node
+        std::vector<Real> faces_at(rest.size(), 0);  // by node: number of the loaded faces at it
         for (const auto& face : load.faces)
             for (const Index node : face) ++faces_at[static_cast<std::size_t>(node)];
         for (const auto& face : load.faces)
@@ -175,7 +176,7 @@ LoadHandle Loads::add(const TractionLoad& load) {
             }
         return append_load(*world_, row, load.scale);
     }
-    std::vector<Real> of_node(rest.size(), 0);  // area [m^2]
+    std::vector<Real> of_node(rest.size(), 0);  // by node: a third of the area of the loaded faces at it [m^2]
     for (const auto& [a, b, c] : load.faces) {
         const Vec3& first = rest[static_cast<std::size_t>(a)];
         const Vec3 twice_area =

@@ -14,8 +14,8 @@ namespace skerry {
 
 namespace {
 
-/// Copy of all data of a body that a change of its material overwrites. It serves to undo the change if the change
-/// fails.
+/// Copy of the element data, node masses and stable steps of a body. If a change of its material fails, they are put
+/// back.
 class KeptBody {
 public:
     KeptBody(Model& model, std::size_t body) : body_(body) {
@@ -179,7 +179,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
         for (const std::size_t body : bodies)
             if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) refuse_losses(model.body_records[body].name);
     // Rigid and implicit bodies come last, because any step is stable for them. If an explicit body has no stable step,
-    // the error is thrown before they change.
+    // the error is thrown before these bodies change, so KeptBody need not restore their masses.
     std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });
     next.write(model.materials, static_cast<std::size_t>(row));
     if (!now.same_elements(next)) {
@@ -195,7 +195,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
             throw;
         }
         for (const std::size_t body : bodies) weigh(model, body);
-        note_forces(model);  // bounds of force elements depend on the masses
+        note_forces(model);  // frequency bounds of force elements depend on the node masses
         model.clusters_open |= !bodies.empty();
         settle_clusters(model, state_->scratch.stiffness_sum);
         // If the new material does not relax, a step writes neither spring_strain nor spring_strain_next, but swaps

@@ -89,7 +89,8 @@ bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const V
     return true;
 }
 
-/// Moves an object steadily from its present pose to each of the poses `to` in turn.
+/// Moves an object steadily from its present pose to each of the poses `to` in turn. Keeps the script if the object
+/// already rests at the last pose or moves there with the same time of arrival.
 template <class Table>
 void follow(const Scripted<Table>& scripted, std::span<const Keyframe> to, Real now) {
     const RigidPose from = scripted.pose(now);
@@ -123,7 +124,7 @@ Index attachment_of(const Model& model, Index collider) {
     return no_index;
 }
 
-/// "collider 'finger'"
+/// Title of a collider in error messages, such as "collider 'finger'".
 std::string title_of(const Model& model, Index collider) {
     return "collider '" + model.collider_records[static_cast<std::size_t>(collider)].name + "'";
 }
@@ -140,9 +141,9 @@ void for_each_script(Model& model, Index collider, auto&& change) {
         change(Scripted{model.attachments, static_cast<std::size_t>(a)});
 }
 
-/// Node positions of a body after one of its attachments was moved from the pose `from` to `pose`. Free nodes move
-/// along if this attachment holds the frame of the body. Nodes that are held along single directions move along these
-/// only. Nodes held by other attachments do not move.
+/// Positions of all nodes of a body after one of its attachments was moved from the pose `from` to `pose`. If this
+/// attachment holds the frame of the body, free nodes move rigidly with it. Nodes that it holds in some directions only
+/// move in these directions. Nodes that other attachments hold completely do not move.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;

@@ -1,4 +1,4 @@
-// Functions that add, remove and change springs between steps (docs/methods/springs.md).
+// Functions that add, read and change springs between steps (docs/methods/springs.md).
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ std::string title_of_spring(const Model& model, std::size_t row) {
                            title_of_end(model, table.second.body[row], table.second.collider[row]));
 }
 
-// The parameter `object` of the following functions is the title of a spring.
+// In the following functions `object` names the spring in error messages (title_of_spring).
 
 void require_not_negative(const std::string& object, const char* field, Real found, const char* unit) {
     if (!(std::isfinite(found) && found >= 0))
@@ -38,8 +38,8 @@ void validate_rest_length(const std::string& object, const TimeTable& rest_lengt
                    short_text(rest_length.keys[k].value), "a length >= 0 (m)");
 }
 
-/// Throws SceneError if an anchor of a spring is on an implicit body and theta is below 1: a force that follows the
-/// deformation would then add energy to the body.
+/// Throws SceneError if the anchor is on an implicit body and Settings::theta is below 1. The spring force, which
+/// follows the deformation, would then add energy to the body.
 void require_stable(const Model& model, const std::string& object, const PlacedAnchor& anchor, const char* field) {
     if (anchor.body == no_index || model.settings.theta == 1) return;
     const auto body = static_cast<std::size_t>(anchor.body);
@@ -60,7 +60,8 @@ void wake_bodies_of(Model& model, std::size_t row) {
         if (body != no_index) model.wake(static_cast<std::size_t>(body));
 }
 
-/// Completes a change of a spring: wakes its bodies, updates the data of force elements and closes the energy balance.
+/// Completes a change of a spring: wakes its bodies, updates the data of force elements, and starts a new energy
+/// balance, which does not count the energy of the change as an error.
 void note_change(WorldState& world, std::size_t row) {
     wake_bodies_of(world.model, row);
     note_forces(world.model);
@@ -72,7 +73,8 @@ Real length_of(const WorldState& world, std::size_t row) {
     return (anchors.of(world.model.springs.first).at(row) - anchors.of(world.model.springs.second).at(row)).norm();
 }
 
-/// The state of a world between steps, and the row of a spring, for a function that changes the spring.
+/// Access to a spring for a function that changes it. The constructor throws SceneError during a step, and for a stale
+/// handle.
 struct Changed {
     WorldState& world;
     SpringTable& springs;

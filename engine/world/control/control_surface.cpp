@@ -1,4 +1,4 @@
-// Friction and restitution by pair of materials and by place on a body (docs/methods/friction.md 4).
+// Friction and restitution of material pairs, and of sets of faces and nodes of a body (docs/methods/friction.md 4).
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -39,7 +39,8 @@ std::string title_of(const Model& model, std::size_t body) {
 }
 
 /// Ratio of the friction coefficients across and along the direction of a set; 1 without `across`. Throws SceneError if
-/// a value is out of range, or if `across` is given without a direction or without a coefficient along it.
+/// a value is out of range, or if `across` is given without a direction or without a positive dynamic friction
+/// coefficient along it.
 Real checked_ratio(const std::string& object, const SurfaceSettings& surface, const std::optional<Real>& across,
                    bool has_direction) {
     validate(surface, object);

@@ -23,7 +23,8 @@ namespace skerry {
 
 namespace {
 
-/// Rows of the objects that a tie joins.
+/// Row of the tied body, `first`, and of the body or collider to which it is tied. Without either, it is tied to the
+/// world.
 struct TiedObjects {
     Index first, second = no_index, collider = no_index;
 };
@@ -85,7 +86,8 @@ TiedObjects objects_of(const Model& model, const TieSettings& tie) {
     return objects;
 }
 
-/// Nearest point of a surface, and the triangle that contains it if the surface has triangles.
+/// Nearest point of a surface. If the surface has triangles: nodes `corner` (local numbers) of the triangle with the
+/// point, and barycentric coordinates `weight` of the point.
 struct OnSurface {
     Vec3 point, normal;
     std::array<Index, 3> corner{};
@@ -137,8 +139,8 @@ bool is_deforming(const Model& model, Index body) {
     return body != no_index && !model.is_rigid(static_cast<std::size_t>(body));
 }
 
-/// Present positions of the tied points [m], one for each node: the position of the node, or for a ball the mean point
-/// of all nodes.
+/// Present positions of the tied points [m], one for each tied node: the position of the node, or for a ball
+/// (TieKind::ball) the centre of mass of all tied nodes.
 std::vector<Vec3> tied_points(const Model& model, const TiedObjects& objects, const TieSettings& tie) {
     const Index first = model.bodies.nodes[static_cast<std::size_t>(objects.first)].begin;
     std::vector<Vec3> points;
@@ -155,8 +157,8 @@ std::vector<Vec3> tied_points(const Model& model, const TiedObjects& objects, co
     return points;
 }
 
-/// Throws SceneError if a tied point is farther from the object to which it is tied than the mean edge length of its
-/// body, or if the object has no surface. The mean point of a ball may be anywhere if the other object is rigid.
+/// Throws SceneError if the object to which a body is tied has no surface, or if a tied point is farther from it than
+/// the mean edge length of the tied body. The point of a ball may be anywhere unless that object is a deformable body.
 void require_close(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
                    const TieSettings& tie, std::span<const Vec3> points) {
     const Model& model = world.model;
@@ -174,7 +176,8 @@ void require_close(WorldState& world, const TiedObjects& objects, std::span<cons
     }
 }
 
-/// Frame in which TieTable stores the position of a node.
+/// Frame of the object to which a node is tied: the mesh frame of a rigid or implicit body, the frame of a collider,
+/// else world axes.
 RigidPose frame_of(const Model& model, const TiedObjects& objects, std::span<const RigidMotion> pose) {
     if (objects.second != no_index && model.has_frame(static_cast<std::size_t>(objects.second)))
         return pose_of_body(model, static_cast<std::size_t>(objects.second));
@@ -193,7 +196,8 @@ void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& p
     table.broken.push_back(infinity);
 }
 
-/// Appends a tied node. `point`: present position of the node, or of the mean point of all nodes [m].
+/// Appends a tied node. `point`: element of tied_points() for the node [m]. On a deformable body, the offset from the
+/// nearest surface point is stored (TieTable::place).
 void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
               Index node, const Vec3& point) {
     Model& model = world.model;
@@ -236,7 +240,8 @@ ColliderHandle handle_of_collider(const Model& model, Index collider) {
     return model.collider_map.handle_of_slot(model.colliders.slot[static_cast<std::size_t>(collider)]);
 }
 
-/// Switches the collisions of the two objects of a tie on or off. Returns whether they were on.
+/// Switches the collisions of the two objects of a tie on or off. Returns whether they were on. Does nothing for a tie
+/// to the world, and returns false.
 bool switch_collisions(World& world, const Model& model, std::size_t tie, bool on) {
     const BodyHandle first = handle_of_body(model, model.ties.first[tie]);
     const auto set = [&](auto other) {

@@ -25,15 +25,15 @@ namespace {
 // only.
 constexpr int calm_steps = 10;
 
-/// Sets all keys of a row to one value.
+/// Makes the time table of a row constant: all its keys get one value.
 void hold_keys(auto& table, std::size_t row, Real value) {
     const std::span<const TimeKey> keys = table.keys_of(row);
     const auto first = static_cast<std::size_t>(keys.data() - std::as_const(table.key).data());
     for (std::size_t k = first; k < first + keys.size(); ++k) table.key[k].value = value;
 }
 
-/// Sets the values of all tables to those at the time `t`. Stops gas and the cables that are driven by a rate, and
-/// prevents ties from breaking.
+/// Makes all time tables constant, with their values at the time `t`. Stops the flow of gas into cavities and through
+/// pipes, stops cables that are driven by a rate, and prevents ties from breaking.
 void hold_values(Model& model, Real t) {
     model.for_each_joining([&](const char*, auto& table, auto&) {
         if constexpr (requires { table.keys_of(0); })
@@ -50,8 +50,8 @@ void hold_values(Model& model, Real t) {
     std::ranges::fill(model.ties.break_force, infinity);
 }
 
-/// Sets the loads, prescribed pressures, and tensions of cables and fibres to a share of their values at the time `t`.
-/// `given`: the same tables before hold_values.
+/// Sets forces, tractions, acceleration fields, prescribed pressures, and tensions of cables and fibres to a share of
+/// their values at the time `t`. Gravity factors and drag keep their values. `given`: the model before hold_values().
 void set_load_share(Model& model, const Model& given, Real t, Real share) {
     const auto set = [&](auto& table, const auto& from, std::size_t row) {
         hold_keys(table, row, share * value_at(from.keys_of(row), t));
@@ -94,7 +94,7 @@ void take_work(WorldState& to, const WorldState& from, std::size_t cable) {
     to.model.cables.dissipated[cable] += before.dissipated - now.dissipated;
 }
 
-/// Undoes hold_values, and restores the flows of pipes. `from`: the same tables before hold_values.
+/// Undoes hold_values(), and restores the flows of pipes. `from`: the model before hold_values().
 void take_values(Model& to, Model& from) {
     std::vector<Column<TimeKey>*> columns;
     const auto visit_keys = [](Model& model, auto&& visit) {
@@ -110,16 +110,18 @@ void take_values(Model& to, Model& from) {
     to.ties.break_force = from.ties.break_force;
 }
 
-/// Changes the settings that a relaxation needs.
+/// Sets two settings, and the step parameters that follow from them. Used before a relaxation and to restore them after
+/// it.
 void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
     world.model.settings.sleep = sleep;
     world.model.settings.tolerance = tolerance;
     const Real kick = world.scratch.parameters.kick;
     world.scratch.parameters = step_parameters(world.model.settings, world.model.tuning);
-    world.scratch.parameters.kick = kick;  // the contacts of the last step are reported with this value
+    world.scratch.parameters.kick = kick;  // reports of the contacts of the last step use this value [s]
 }
 
-/// Gives the world after a relaxation the record of the run before it. Only the list of contacts is new.
+/// Gives the relaxed world the run record that the world had before the relaxation. Only the list of contacts is built
+/// again.
 void keep_record(RunRecord& before, RunRecord& now) {
     now.counters = before.counters;
     now.self_crossings = std::move(before.self_crossings);
@@ -167,7 +169,8 @@ public:
             if (moves(b)) stop_body(state_.model, b);
     }
 
-    /// Adds the steps to the report. Returns true if the bodies have reached equilibrium.
+    /// Makes steps until equilibrium, `max_steps`, a failed step, or go_on() returns false. Adds the steps to the
+    /// report. Returns true if the bodies have reached equilibrium.
     bool run(const std::function<bool(const RelaxReport&)>& go_on, RelaxReport& report) {
         bool balanced = false;
         int calm = 0;
@@ -234,9 +237,9 @@ private:
         for (const BodyBalance& of : bodies_) largest_ = std::max(largest_, of.out_of_balance);
     }
 
-    /// Returns true if all bodies are in balance and slow. A body is slow if forces of the tolerated size would give it
-    /// its speed within `time` [s]. Without weights, loads and contacts, the tolerance is relative to the largest
-    /// out-of-balance force so far.
+    /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual. A body is
+    /// slow if its momentum is at most tolerance * forces * `time`, with the time for which all bodies have been in
+    /// balance [s]. Without weights, loads and contacts, `largest_` replaces the forces.
     bool find_worst(Real time, RelaxReport& report) const {
         report.residual = report.speed = 0;
         report.worst.reset();
@@ -256,7 +259,8 @@ private:
         return in_balance;
     }
 
-    /// Stops each set of joined bodies whose kinetic energy has passed a maximum.
+    /// Kinetic damping: stops each set of joined bodies whose kinetic energy has fallen in this step. At a maximum of
+    /// kinetic energy the set is near its equilibrium.
     void damp() {
         const std::size_t count = bodies_.size();
         sum_.assign(count, 0);
@@ -273,11 +277,11 @@ private:
     UnionFind sets_;                     // sets of joined bodies
     std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;    // by body
-    std::vector<Real> kinetic_, sum_{};  // kinetic energies of the sets, by their roots [J]
+    std::vector<Real> kinetic_, sum_{};  // kinetic energies of the sets before and after this step, by root body [J]
     Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
 };
 
-/// Stops everything that changes over time, and wakes all bodies.
+/// Stops everything that is prescribed as a function of time, and wakes all bodies.
 void prepare(WorldState& world, Real t, Real tolerance) {
     set_for_relaxation(world, false, tolerance);
     hold_values(world.model, t);
@@ -287,7 +291,8 @@ void prepare(WorldState& world, Real t, Real tolerance) {
     note_changed_seams(world.model);
 }
 
-/// Relaxes `copy` with growing shares of the loads of `given`, until the whole loads are reached.
+/// Relaxes `copy` with growing shares of the loads of `given`, until the whole loads are reached. If a relaxation
+/// fails, returns to the last equilibrium and halves the increment of the loads.
 RelaxReport grow_loads(World& copy, const WorldState& given, const RelaxSettings& settings,
                        const std::function<bool(const RelaxReport&)>& go_on) {
     constexpr Real smallest = 1.0 / 64;  // smallest increment of the loads, as a fraction of a load step

@@ -17,8 +17,8 @@ namespace skerry {
 
 namespace {
 
-/// Sets the stored impulses of the contacts, joints, ties and cables of a body to zero. They are the warm start of the
-/// next step.
+/// Sets the impulses and forces that the last step has stored for contacts, joints, ties, cables, fibres and springs of
+/// a body to zero, because the next step would start from them. Joints return to their first coordinates.
 void forget_impulses(WorldState& world, std::size_t body) {
     Model& model = world.model;
     const std::uint32_t slot = model.bodies.slot[body];
@@ -40,7 +40,7 @@ void forget_impulses(WorldState& world, std::size_t body) {
         if (own || (joints.leader[j] != no_index && joins(joints.leader[j]))) joints.mimic_impulse[j] = 0;
         if (!own) continue;
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
-        joints.coordinate[j] = joints.first_coordinate[j];  // with its revolutions
+        joints.coordinate[j] = joints.first_coordinate[j];  // includes the complete revolutions of a hinge
         joints.step[j] = 0;
         joints.axis_impulse[j] = {};
     }
@@ -70,8 +70,8 @@ void forget_impulses(WorldState& world, std::size_t body) {
     }
 }
 
-/// Sets the strains of the springs of a body to zero, and the corotational frames of its elements to `turn`, the
-/// rotation of the body since its elements were built.
+/// Sets the spring strains of the Maxwell elements of a body to zero, and the corotational frames of its elements to
+/// `turn`, the rotation of the body since its elements were built.
 void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
     ElementBlockTable& elements = model.elements;
     const Range blocks = model.bodies.blocks[body];

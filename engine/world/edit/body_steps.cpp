@@ -109,8 +109,9 @@ MassProperties mass_of_shape(const Model& model, const NewBody& body) {
         const Vec3 center = (body.nodes[0] + body.nodes[static_cast<std::size_t>(body.core_nodes) - 1]) / 2;
         return {ball + shaft, center, {across, across, axial}, Mat3::Identity()};
     }
-    // Integrals over the inside of a surface are sums over the tetrahedra that a fixed point forms with the triangles
-    // (divergence theorem). The volumes of these tetrahedra have signs.
+    // Integrals over the inside of a closed surface are sums over the tetrahedra that a fixed point, here the first
+    // node, forms with the triangles (divergence theorem). A tetrahedron has a negative volume if the outer side of its
+    // triangle faces this point.
     std::vector<std::array<Index, 4>> fan;
     for (const auto& [a, b, c] : body.triangles) fan.push_back({0, a, b, c});
     const std::span<const std::array<Index, 4>> tetrahedra = fan.empty() ? body.tetrahedra : fan;
@@ -189,18 +190,19 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // In a large body, mass forms are verified for groups of elements instead of the whole body. Such mass forms
-    // lengthen the stable step less. They are dropped if they do not lengthen it.
+    // The mass forms (mass_forms.h) of a large body are verified for groups of elements instead of the whole body,
+    // which lengthens the stable step less or not at all. They are dropped if they do not lengthen it.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
-    // Frame masses are chosen for linear elements only. The mass forms of smoothed elements already allow steps near
-    // the stability limit. Still closer to this limit, the energies of the highest frequencies are less accurate.
+    // Frame masses (frame_masses.h) are chosen for linear elements only. The mass forms of smoothed elements already
+    // allow steps near the stability limit, and even closer to it the energies of the highest frequencies would be less
+    // accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
-    // A body that yields gets no frame masses either, because they do not follow plastic flow.
+    // A body that yields gets no frame masses either, because frame masses are not updated after plastic flow.
     const auto b = static_cast<std::size_t>(row);
     if (model.body_records[b].element != ElementKind::linear || model.yields(b)) return by_either;
-    // Least ratio of the stable step with frame masses to the stable step without them. A smaller gain does not justify
-    // the second evaluation that strained bodies then need.
+    // Least ratio of the stable step with frame masses to the stable step without them. With frame masses, strained
+    // bodies need a second evaluation of the stable step, which a smaller gain does not justify.
     constexpr Real least_gain = 1.1;
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
@@ -267,7 +269,7 @@ void take_steps(const KnownElements& known, Index row, Model& model) {
 }
 
 void remember_elements(Model& model, Index row, KnownElements known) {
-    // Largest number of entries, because each new mesh is compared with the meshes of all entries.
+    // Limits the time of known_elements(), which compares each new mesh with the meshes of all entries.
     constexpr std::size_t most_known = 64;
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     known.body = row;

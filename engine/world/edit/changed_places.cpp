@@ -11,7 +11,8 @@ namespace skerry {
 
 namespace {
 
-/// Bounding box of the surface of a body, enlarged by the length `by` on all sides [m].
+/// Bounding box of the surface of a body, enlarged on all sides by the length `by` and, for a round body, by its radius
+/// [m].
 Aabb box_of_body(const Model& model, std::size_t body, Real by) {
     Aabb box = empty_box();
     for (const Index node :

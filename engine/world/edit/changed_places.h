@@ -13,7 +13,7 @@ namespace skerry {
 /// added.
 class ChangedPlaces {
 public:
-    /// Adds the bounding box of a body, or of the body of a mesh collider.
+    /// Adds the bounding box of a body, or of the mesh of a mesh collider, enlarged by its contact distance.
     void add_body(const Model& model, std::size_t body);
     /// Adds the bounding box of a collider, or the plane of a plane collider. `now`: present time [s].
     void add_collider(const Model& model, std::size_t collider, Real now);

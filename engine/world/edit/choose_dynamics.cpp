@@ -13,19 +13,21 @@ namespace skerry {
 namespace {
 
 constexpr Real ns = 1e-9;  // a nanosecond [s]
-// Cost of a step of an implicit body, as a power law of its number of nodes. The law was fitted to the output of
-// profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
+// Cost of a step of an implicit body: step_time * (number of nodes / fitted_nodes)^step_power. The law was fitted to
+// the output of profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
-constexpr Real step_time = 2.5e6, step_power = 1.75;  // [ns]
-// Fraction of the cost of such a step that is spent on contacts. If an implicit body takes long steps, its contacts
-// still take part in every short step of the other bodies. For a cube on a face the fraction is a half or more.
+constexpr Real step_time = 2.5e6, step_power = 1.75;  // step_time [ns]
+// Fraction of step_time that is spent on contacts; for a cube on a face it is a half or more. It counts in every step
+// of the world, because contacts of an implicit body take part in the short steps of the other bodies even during its
+// own long step.
 constexpr Real contact_share = 0.5;
 // Cost of the contacts of a body in a pile, divided by that of a cube on a face. In piles of 27 cubes of 27 to 729
 // nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
 constexpr Real pile_contacts = 40;
 // Cost of the contacts of an explicit body in the same piles, per step and node [ns].
 constexpr Real node_contacts = 200;
-// Cost of factorising the matrix of an implicit body and of computing the matrix columns that contacts need [ns].
+// Cost of factorising the matrix of an implicit body and of computing the matrix columns that contacts need [ns]:
+// factor_time * (number of nodes / fitted_nodes)^factor_power.
 constexpr Real factor_time = 150e6, factor_power = 2.7;
 // Assumed number of factorisations in a simulated second. A change of the step length requires a new factorisation.
 constexpr Real factors_a_second = 1;
@@ -36,8 +38,8 @@ constexpr Real most_strain = 0.02;  // largest strain for which linear elasticit
 constexpr Real fall = 10;           // assumed height of a fall, divided by the size of the body
 
 /// Largest strain expected in the materials of a body, under its own weight or in an impact. The impact strain is v/c,
-/// as in a bar that is stopped. Here c is the wave speed, and the impact speed v combines the initial speed and a fall.
-/// Without gravity nothing is known about later speeds, so they are assumed to be those under the default gravity.
+/// as in a bar that is stopped, with the wave speed c and the impact speed v = sqrt(u^2 + 2 g H) for the initial speed
+/// u and a fall from the height H. Without gravity nothing is known about later speeds, so g is the default gravity.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
@@ -56,7 +58,7 @@ Real largest_strain(const Model& model, const NewBody& body) {
     return strain;
 }
 
-/// Computes the results that are stored for the elements of a body, in a model that contains only this body.
+/// Computes the KnownElements of a body by appending it to an empty model.
 KnownElements try_alone(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;
@@ -72,7 +74,7 @@ Real cost_of_elements(std::size_t blocks) {
     return ns * element_cost * static_cast<Real>(blocks * element_lanes);
 }
 
-/// Fills in the steps and costs of an estimate.
+/// Computes the step lengths and the costs (computing time per simulated second) of an estimate.
 void compare_costs(const Model& model, const NewBody& body, const KnownElements& elements, DynamicsEstimate& estimate) {
     const Real others = cost_of_elements(model.elements.volume.size());
     const auto nodes = static_cast<Real>(body.nodes.size());
@@ -135,7 +137,8 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
     if (estimate.reason != DynamicsReason::cost) return BodyDynamics::explicit_elastic;
     const KnownElements* known = known_elements(model, body);
     if (!known) known = &trial.emplace(try_alone(model, body));
-    // A body without a valid stable step has a faulty mesh or material. It is refused as an explicit body.
+    // A body without a valid stable step has a faulty mesh or material. It becomes explicit, so that validate_step()
+    // refuses it.
     if (!(known->rest_step > 0) || !std::isfinite(known->rest_step)) return BodyDynamics::explicit_elastic;
     compare_costs(model, body, *known, estimate);
     return estimate.implicit_cost * least_saving < estimate.explicit_cost ? BodyDynamics::implicit_elastic
@@ -156,9 +159,9 @@ Index outdated_choice(const Model& model, DynamicsEstimate& now) {
         now.implicit_step = step;
         now.deforming_step = std::max(step, model.settings.implicit_step);
         now.explicit_step = std::min(before.explicit_step, step);
-        // The stored costs already include the bodies that existed at that time, so these bodies count twice. Both
-        // costs become too large, the explicit cost more because explicit steps are shorter. A body therefore becomes
-        // explicit only if this certainly saves time.
+        // The costs in `before` already include the bodies that existed at the first estimate, so `others` counts these
+        // bodies twice. Both new costs are too large, the explicit cost more because its step is shorter. A body
+        // therefore becomes explicit only if this certainly saves time.
         now.explicit_cost = (others + before.explicit_cost * before.explicit_step) / now.explicit_step;
         now.implicit_cost = (others + before.implicit_cost * before.implicit_step) / step;
         now.damped_above = 0;  // an explicit body is not damped by its steps

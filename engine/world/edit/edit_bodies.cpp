@@ -23,7 +23,7 @@ namespace {
 // Initial value of uninverted_until, for tetrahedra that find_inversions has not checked yet [m].
 constexpr Real not_evaluated = -infinity;
 
-// fraction of the mean surface edge; it is small against the resolution of the mesh
+// default contact distance divided by the mean surface edge, small against the resolution of the mesh
 constexpr Real default_contact_distance = 0.02;
 
 Range appended(std::size_t before, std::size_t after) {
@@ -53,8 +53,9 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// The element kind that all material zones of a body have in common; linear if there are no zones. If `smoothed`
-/// became edge_smoothed in some zones and edge_node_smoothed in others, the result is edge_node_smoothed.
+/// Element kind that is recorded for a body; linear if it has no material zones. The kinds of zones differ only if the
+/// requested kind `smoothed` became edge_smoothed in some and edge_node_smoothed in others. The result is then
+/// edge_node_smoothed.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
@@ -114,8 +115,9 @@ struct RowsOfBody {
     Ragged<Index> covered;
 };
 
-/// Builds the elements of a body and appends them to the tables. `known`: elements of an equal body, or null. The list
-/// of elements is freed at once, because it is a third as large as all tables of the body.
+/// Builds the elements of a body and appends them to the tables. `known`: stored results for an earlier body with the
+/// same mesh, or null. The list of elements is local, to be freed at once: it is a third as large as all tables of the
+/// body.
 void append_elements_of(Model& model, const NewBody& body, std::span<const MaterialZone> zones,
                         const KnownElements* known, RowsOfBody& rows) {
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);

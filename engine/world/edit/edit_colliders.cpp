@@ -1,4 +1,4 @@
-// Functions that add and remove colliders and attachments between steps.
+// Functions that add colliders and attachments, and remove attachments, between steps.
 #include <cmath>
 #include <numbers>
 
@@ -19,8 +19,8 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
     return script;
 }
 
-/// Pose at time 0 of an object that has the pose `pose` at the time `now` and moves at constant velocities. A script
-/// needs this pose, because scripts start at time 0.
+/// Pose at time 0 of an object that has the pose `pose` at the time `now` and moves at constant velocities. It is
+/// stored beside the script, because new scripts start at time 0.
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
@@ -42,8 +42,8 @@ struct GeometryOf {
     ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
 };
 
-/// The smallest rotation that rotates the z axis to `direction`. If `direction` is opposite to z, it is a rotation by
-/// 180 degrees about x.
+/// The smallest rotation that rotates the z axis to `direction`. If `direction` is opposite to z, the result is a
+/// rotation by 180 degrees about x.
 Mat3 turn_from_z(const Vec3& direction) {
     const Vec3 axis(-direction.y(), direction.x(), 0);
     const Real sine = axis.norm();
@@ -62,8 +62,9 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Motion of a shape that has the pose `placed` without keys. Keys give the pose of the shape itself, as move_to and
-/// set_pose do. If no key has a rotation, the shape keeps its own.
+/// Motion of the shape of a collider. `placed`: pose of the shape if there are no keys. Keys give poses of the shape
+/// frame, not of the collider frame, as move_to and set_pose do. If no key has a rotation, the shape keeps that of
+/// `placed`.
 Motion motion_of_shape(const Motion& motion, const RigidPose& placed) {
     Motion of_shape = motion;
     if (!motion.turns())

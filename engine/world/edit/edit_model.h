@@ -30,15 +30,15 @@ struct NewBody {
     Index core_nodes = 0;
     Real round_radius = 0;  // [m]
     std::span<const Vec3> nodes;
-    // For a body that is frozen in the deformed shape `nodes`: node positions of its mesh, which determine the masses
-    // of the tetrahedra. If the list is empty, `nodes` determine the masses [m].
+    // Node positions [m] that determine the masses of the tetrahedra; empty: `nodes`. Used for a body that is frozen in
+    // the deformed shape `nodes`, and whose masses follow from its undeformed mesh.
     std::span<const Vec3> mesh_shape = {};
     std::span<const std::array<Index, 4>> tetrahedra;
     std::span<const std::array<Index, 3>> triangles;  // surface triangles of a body without tetrahedra
     Vec3 position;
     Mat3 rotation;
     Vec3 velocity, angular_velocity;
-    // mass properties as given, see BodySettings
+    // mass properties that the user has given (BodySettings); the others follow from the shape
     std::optional<Real> mass = {};
     std::optional<Vec3> center_of_mass = {};
     std::optional<Mat3> inertia = {};
@@ -69,7 +69,8 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
 
 /// Appends a body that consists of a surface, with or without tetrahedra. Returns its row. `stiffness_sum`: working
 /// memory with one entry per node. The caller keeps this memory between calls, so that the cost of a call depends only
-/// on the size of the new body. `trial`: results of a trial of this body; without it, stored results are used.
+/// on the size of the new body. `trial`: results of choose_dynamics() for this body; null: results that an earlier body
+/// with the same mesh has stored are used, if there are any.
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body, const KnownElements* trial = nullptr);
 
 // choose_dynamics.cpp
@@ -78,17 +79,18 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
 /// `tetrahedron_material`: material of each tetrahedron; empty if all have `material`.
 void require_implicit_materials(const Model& model, Index material, std::span<const Index> tetrahedron_material,
                                 const std::string& name);
-/// Throws SceneError: the body with this name is implicit and has a loss factor.
+/// Throws the SceneError for the implicit body with this name, a material of which sets a loss factor.
 [[noreturn]] void refuse_losses(const std::string& body);
 
 /// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
-/// `estimate`. The costs may depend on properties of the body's elements. If no results for equal elements are stored,
-/// they are computed and written to `trial`. `body` must be explicit.
+/// `estimate`. If costs must be compared and no results of find_steps() are stored for the same mesh, computes them and
+/// writes them to `trial`. `body.dynamics` must be explicit_elastic.
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
                              std::optional<KnownElements>& trial);
 
 /// Returns the row of a body that became implicit by choose_dynamics, but for which explicit steps now cost less
-/// because bodies were added that require short steps; no_index if there is none. Writes the present estimate to `now`.
+/// because bodies were added that require short steps; no_index if there is none. Writes the new estimate for this body
+/// to `now`.
 Index outdated_choice(const Model& model, DynamicsEstimate& now);
 
 // body_steps.cpp
@@ -97,14 +99,15 @@ Index outdated_choice(const Model& model, DynamicsEstimate& now);
 /// mesh.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);
 /// Masses of the two parts of a round body [kg]: the ball that both ends form together, and the shaft between the ends.
+/// A cylinder consists of the shaft only.
 struct RoundMass {
     Real ball, shaft;
 
     Real sum() const { return ball + shaft; }
 };
 RoundMass round_mass(const Model& model, const NewBody& body);
-/// Mass properties of a rigid body in the frame of its mesh. Those that are not given follow from its shape: a set of
-/// tetrahedra, the inside of a closed surface, or a sphere, capsule or cylinder along z.
+/// Mass properties of a rigid or implicit body in the frame of its mesh. Properties that the user has not given follow
+/// from its shape: a set of tetrahedra, the inside of a closed surface, or a sphere, capsule or cylinder along z.
 struct MassProperties {
     Real mass = 0;               // [kg]
     Vec3 center = Vec3::Zero();  // [m]
@@ -121,8 +124,8 @@ void set_masses(Model& model, const NewBody& body, Range nodes);
 Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
 /// Removes the mass forms and frame masses of the elements in `blocks`.
 void forget_mass_forms(Model& model, Range blocks);
-/// Finds relaxation, mass shares and the stable step at rest of the elements of a body. The elements must be as they
-/// were appended.
+/// Finds relaxation, mass shares and the stable step at rest of the elements of a body. The elements must not be
+/// rotated, and must have no mass forms, frame masses or relaxation yet.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 Column<Real>& stiffness_sum);
 /// Computes masses and stable steps of a body again after its materials have changed. Stored results of earlier bodies
@@ -136,7 +139,7 @@ void take_steps(const KnownElements& known, Index row, Model& model);
 /// Stores the results of find_steps for later bodies with the same mesh. `places`: lane of each element in the element
 /// blocks of the body.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
-/// Stores the results of a trial of the body `row` for later bodies with the same mesh.
+/// Stores the results that choose_dynamics() has computed for the body `row` for later bodies with the same mesh.
 void remember_elements(Model& model, Index row, KnownElements trial);
 
 // The following functions are defined in edit_colliders.cpp. The argument `now` is the time at which the row is added

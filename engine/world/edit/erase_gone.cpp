@@ -128,8 +128,8 @@ void erase_records(std::span<const Index> row_now, std::vector<Record>& records)
     std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
 }
 
-/// Removes scripts together with their keyframes. A remaining script without keyframes has an empty range, whose start
-/// may be any index.
+/// Removes scripts together with their keyframes. row_without() also serves a remaining script without keyframes, whose
+/// empty range may start at a removed keyframe.
 void erase_scripts(std::span<const Range> gone, auto& table) {
     std::vector<Range> keys, merged;
     for (const Range& rows : gone)
@@ -218,7 +218,7 @@ void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
     table.node.erase(nodes);
     table.anchor.erase(nodes);
     erase_scripts(gone, table);
-    Index end = 0;  // lists are contiguous
+    Index end = 0;  // the node lists of the rows follow each other without gaps
     for (Range& of_row : table.nodes) {
         of_row = {end, end + of_row.size()};
         end = of_row.end;

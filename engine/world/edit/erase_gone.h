@@ -11,10 +11,10 @@ namespace skerry {
 // erase_from_cache.cpp
 
 /// Removes pairs of an erased object, and contacts of sleeping bodies with an erased object. Other pairs keep their
-/// data. Warm-start impulses are not removed, since their keys name bodies by slot. `body_of_node`: body row of each
-/// node before the removal.
+/// data. Warm-start impulses need no change, since their keys name bodies by slot and not by row. `body_of_node`: body
+/// row of each node before the removal.
 void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactCache& cache);
-/// Removes the contacts of a step in which an erased object takes part. Returns the removed rows.
+/// Removes those contacts of a step that belong to an erased object. Returns the removed rows.
 std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts);
 
 // erase_gone.cpp
@@ -22,8 +22,8 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
 /// Removes the rows of erased bodies and colliders from the model. Also removes the element patches of the first erased
 /// body and of all later bodies; Model::extend_derived builds these patches again.
 void erase_gone(const RowMoves& moves, Model& model);
-/// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `down`:
-/// numbers that are subtracted from the references.
+/// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `down`: for
+/// each table, the number subtracted from references to its rows.
 void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
                            const OfBodyTables<Index>& down);
 /// Removes scripted colliders or attachments together with their keyframes. `gone`: removed rows in ascending order.

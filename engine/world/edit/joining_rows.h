@@ -19,8 +19,8 @@ Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) 
     return {static_cast<Index>(row), static_cast<Index>(row) + 1};
 }
 
-/// Columns that have a list of entries for each row of a table. `rows`: column with the range of entries of each row.
-/// `columns`: columns with the entries.
+/// Columns that store a list of entries for each row of a table. `rows`: column with the range of the entries of each
+/// row. `columns`: columns that contain the entries of all rows, one row after the other.
 struct RowLists {
     Column<Range>* rows;
     std::vector<AnyColumn> columns;
@@ -106,13 +106,13 @@ void wake_and_erase_rows(const std::vector<bool>& gone, Table& table, NamedHandl
     erase_joining_rows(gone, table, map);
 }
 
-/// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object
+/// Removes all rows that name an object, for example the joints and loads of a body. Must be called before the object
 /// is removed. Wakes all bodies of the removed rows. `role`: `body` or `collider`; `object`: row of BodyTable or
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 
-/// Names of the tables whose rows can join several bodies, such as "joints". `body`: only tables with a row that joins
-/// this body to another object; no_index: all of these tables.
+/// Names of the tables whose rows can join several bodies, such as "joints". With a `body`, only tables in which a row
+/// names this body are returned; with no_index, all of them.
 std::vector<const char*> tables_joining(Index body, Model& model);
 
 /// Moves rows that act on one body only, such as loads, from the body `before` to the body `after` with the same mesh.

@@ -56,7 +56,7 @@ struct MaterialRow {
         table.orthotropic[row] = orthotropic;
         table.sets_losses[row] = sets_losses;
     }
-    /// True if elements of both materials have the same forces, masses and losses.
+    /// True if elements of both materials have the same elastic forces, masses and losses. Plastic flow may differ.
     bool same_elements(const MaterialRow& other) const {
         const MaterialConstants &a = constants, &b = other.constants;
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&

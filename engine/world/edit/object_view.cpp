@@ -23,7 +23,7 @@ void ObjectView<HandleType>::remove(HandleType object) {
     wake_and_erase_rows(gone, table, ObjectsOf<HandleType>::handles(model), model);
     model.links_open = true;
     note_forces(model);
-    world.record.balance.close();  // the energy of springs and fillings is removed with them
+    world.record.balance.close();  // the energy stored in a spring, or in the gas of a cavity, vanishes with it
 }
 
 template <class HandleType>

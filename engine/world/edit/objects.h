@@ -69,7 +69,7 @@ std::vector<HandleType> handles_of(const Model& model) {
     return handles;
 }
 
-/// Name of an object, which is NOUN_SLOT if it was given none.
+/// Name of an object. Without a given name, it is made of the noun and the handle slot, such as "joint_3".
 template <class HandleType>
 std::string object_name(const Model& model, HandleType object) {
     const auto& names = ObjectsOf<HandleType>::handles(model).names;
@@ -79,12 +79,13 @@ std::string object_name(const Model& model, HandleType object) {
 
 // Each of the following functions is called before an object is removed. `object`: a live handle.
 
-/// Switches the collisions of the joined objects on again if nothing else switches them off.
+/// Switches the collisions of the two objects on again, unless another joint (or another tie, for a tie) of these
+/// objects switches them off.
 void prepare_removal(World& world, JointHandle joint);
 void prepare_removal(World& world, TieHandle tie);
 /// Removes the pipes of a cavity.
 void prepare_removal(World& world, CavityHandle cavity);
-/// Wakes all bodies if the load acts on all bodies.
+/// Wakes the body on which the load acts, or all bodies.
 void prepare_removal(World& world, LoadHandle load);
 
 }  // namespace skerry

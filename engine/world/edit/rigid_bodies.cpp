@@ -48,8 +48,9 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// Must be called after the node displacements or the mass of a body were changed. Finds out whether the body has large
-/// strain. Fits the frame of a free body to the deformed shape at large strain, and to the rest shape when it ends.
+/// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large
+/// (StiffBody::becomes_large). For a free body, also computes the moments of inertia and the principal axes: of the
+/// deformed shape at large strain, of the rest shape when large strain ends.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -80,7 +81,7 @@ void give_nodes_velocity(Model& model, std::size_t body) {
 
 /// Distributes the mass of a body among its nodes (Model::shares_mass). Sums over node masses then give the mass and
 /// the centre of mass exactly. The mass of a node depends linearly on its position, so it may be negative if the centre
-/// of mass is outside of the body.
+/// of mass is far from the mean of the node positions.
 void share_mass(Model& model, std::size_t body) {
     const std::size_t r = rigid_row(model, body);
     const RigidBodyTable& table = model.rigid_bodies;
@@ -216,7 +217,8 @@ NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span
     return nearest_frame(rest, position, [](std::size_t) { return Real(1); });
 }
 
-/// Computes the displacements and velocities of a held body, relative to the frame of its attachment, from its nodes.
+/// Fits the frame of a held implicit body to the nodes of its attachment. Computes the displacements and velocities of
+/// all nodes relative to this frame.
 void write_held_shape(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -415,7 +417,8 @@ void follow_node_velocities(Model& model, std::size_t body) {
             follow_large_velocities(model, body, velocity);
             return;
         }
-        // The angular velocity is converted back to angular momentum, now with the inertia of the undeformed body.
+        // note_strain() may have changed the moments of inertia to those of the undeformed body, so the angular
+        // momentum is computed again.
         set_motion(table, r, velocity, turn);
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();

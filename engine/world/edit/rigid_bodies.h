@@ -12,14 +12,14 @@ namespace skerry {
 /// Appends the row of RigidBodyTable for a body whose nodes are already in the tables.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
-/// Copies the given mass properties of a body to `as_new`, the settings of an equal new body.
+/// Copies the mass properties that the user has given for a body to `as_new`, which describes the body as a new one.
 void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new);
 /// Computes mass and inertia of a body again after densities have changed. The velocity and angular velocity of the
 /// body do not change.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
 
-/// The pose of a rigid body that is nearest to given node positions. `misfit`: largest distance of a node in this pose
-/// from its given position [m].
+/// The pose of a rigid or implicit body, with the centre of mass `center`, that is nearest to given node positions.
+/// `misfit`: largest distance of a node in this pose from its given position [m].
 struct RigidFit {
     Vec3 center;
     Mat3 rotation;  // rotation from the frame of the principal axes to world axes
@@ -33,8 +33,8 @@ RigidPose pose_of_body(const Model& model, std::size_t body);
 /// True if a body can neither move nor rotate while the given nodes (local numbers) are held. This is so if the nodes
 /// do not all lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
-/// Finds the attachments that hold whole rigid bodies or the frames of implicit bodies, and the pose at which each body
-/// is held.
+/// Finds the attachments that hold whole rigid bodies or the frames of implicit bodies, and the pose of each held body
+/// relative to its attachment.
 void find_holders(Model& model);
 /// Must be called after an implicit body was attached or released, or after its held nodes were moved. From then on the
 /// deformation is measured in the frame of the attachment, or in the body's own frame if the body is free. All nodes
@@ -56,10 +56,11 @@ NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& cen
 void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum);
 /// Sets the momentum and the angular momentum of a body to zero.
 void stop_rigid_body(Model& model, std::size_t body);
-/// Sets the pose of a body and moves the nodes of the body along. The momentum and the angular momentum do not change.
+/// Sets the centre of mass of a body and the rotation from its principal axes to the world, and moves its nodes along.
+/// The momentum and the angular momentum do not change.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
 /// Sets the node positions of an implicit body. The nearest rigid pose becomes the pose of the body, and the difference
-/// from this pose its deformation.
+/// from this pose becomes its deformation.
 void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position);
 /// Sets the momenta of a body to those of the rigid motion nearest to its node velocities. The difference from this
 /// motion becomes the deformation velocity of an implicit body, and is lost for a rigid body.

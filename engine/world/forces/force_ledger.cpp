@@ -39,8 +39,9 @@ bool rests(const Model& model, Index body) {
     return model.bodies.asleep[static_cast<std::size_t>(body)] != 0;
 }
 
-/// Force and moment of an attachment on an implicit body that balance the elastic forces, over the nodes `held` [N, N
-/// m]. If the attachment holds the frame of the body, the moment on the frame is included.
+/// Force [N], and moment about `moment_point` [N m], with which an attachment balances the elastic forces of an
+/// implicit body at the nodes `held`. If the attachment holds the frame of the body, the moment on the frame is
+/// included.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -200,8 +201,8 @@ Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
 }
 
 bool ForceLedger::shows_contacts() const {
-    // A step may leave gaps open that are a small part of the distance travelled in the step. A call of a hundredth of
-    // this step is long enough for contacts to close them.
+    // A step may leave gaps open that are a small part of the distance travelled in the step. Contacts close these gaps
+    // in a call that is at least a hundredth as long as the step before the call.
     constexpr Real shortest_share = 0.01;
     return call_.whole > 0 && call_.whole >= shortest_share * step_before_;
 }
@@ -210,11 +211,12 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
     if (!(call_.whole > 0)) return false;
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
     if (rests(model, static_cast<Index>(body))) return true;
-    // The reaction on a rigid body is its change of momentum minus the impulses of weight and contacts.
+    // The reaction on a rigid body is its change of momentum minus the impulses of weight and contacts, so contact
+    // forces must be measured.
     const bool rigid = model.is_rigid(body), implicit = is_implicit(model, body);
     if (rigid && !shows_contacts()) return false;
     constexpr Real digits = 2 * std::numeric_limits<Real>::epsilon();
-    Real held = 0;   // mass [kg]
+    Real held = 0;   // mass of the held nodes [kg]
     Real noise = 0;  // rounding error of the momentum [N s]
     const auto add_position = [&](std::size_t n, Real mass) {
         if (!model.nodes.velocity[n].isZero(0)) noise += mass * digits * model.nodes.position[n].norm() / step_.whole;
@@ -271,8 +273,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 }
 
 /// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
-/// them, their mean forces over the time in which both were still are used. If a body was awake, adds the step to the
-/// sums over the still time, or clears these sums if a body moved.
+/// them, adds their mean forces over the time in which both were still. If a body was awake, prolongs this time by the
+/// step, or clears the sums over it if a body has moved.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -356,7 +358,7 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        // the momentum of a rigid body cannot be computed from node velocities
+        // the momentum of a rigid body is not the sum over its nodes, whose masses do not give its inertia
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
         // nodes that are held along single directions keep their velocities in a drift
         if (!holds_completely(model.attachments.held[a])) continue;

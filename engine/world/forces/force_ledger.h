@@ -29,8 +29,8 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Largest force and numbers of contacts of an object or pair over the steps of a call. Also contains the sums over
-    /// the present step.
+    /// Values for an object or pair in one call of advance: the largest mean force of a step, the number of contacts in
+    /// the last step, and the largest number in a step. Also contains the sums over the present step.
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
@@ -71,8 +71,8 @@ public:
     /// True if the call was long enough for contact forces to be measured. Gaps that the step before the call has left
     /// open may stay open during a call that is much shorter than that step.
     bool shows_contacts() const;
-    /// True if rounding errors of positions and velocities changed the force of an attachment by little. `attachment`:
-    /// row of AttachmentTable.
+    /// True if the force of an attachment counts as measured: rounding errors of positions and velocities have changed
+    /// it by little and, on a rigid body, shows_contacts() is true. `attachment`: row of AttachmentTable.
     bool shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const;
 
     /// Starts to measure forces. For sleeping bodies, the contact and attachment forces of the last step before they
@@ -117,7 +117,7 @@ private:
     Seconds step_, call_;
     Real step_before_ = 0;        // length of the step before the call; 0 if there was none [s]
     std::vector<PairRow> pairs_;  // sorted by key
-    // by slot
+    // indexed by handle slot
     std::vector<Peak> bodies_, colliders_;
     std::vector<AttachmentRow> attachments_;
 };

@@ -16,8 +16,9 @@ AnchorRow row_of(const MaterialPoint& point) {
     return {point.node, point.weight, Vec3::Zero()};
 }
 
-/// Fixes a point to a rigid body, wherever the point is. Any tetrahedron that is not flat represents it exactly; the
-/// one with the smallest weights has the smallest rounding errors.
+/// Fixes a point, inside or outside, to a rigid body by barycentric weights in a tetrahedron. Any tetrahedron that is
+/// not flat represents the point exactly. The one with the smallest sum of squared weights is used, because its
+/// rounding errors are smallest.
 AnchorRow point_of_rigid_body(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                               const Vec3& point) {
     MaterialPoint best;

@@ -1,4 +1,5 @@
-// Adds the sums that each rank has kept over its own steps to the records of the run, when they are needed.
+// Collects the sums that each rank keeps for itself during steps, and adds them to the records of the run when these
+// are needed.
 #include <algorithm>
 #include <cstdint>
 #include <span>

@@ -1,4 +1,5 @@
-// Ghosts for which only the owner computes forces. Their holders receive the predicted velocities of the owner.
+// Led ghosts: ghosts for which only the owner computes forces. The other ranks that hold the body receive its predicted
+// velocities from the owner.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -39,8 +40,9 @@ struct LedBodies {
     }
 };
 
-/// Sends the predicted velocities of the bodies whose ghosts this rank leads, in body order, and receives those of its
-/// own led ghosts. Sleeping bodies have no velocity and are left out.
+/// Sends the predicted velocities of own bodies with RankState::leads to the ranks that hold their ghosts, and receives
+/// the velocities of the led ghosts on this rank. Both ranks visit bodies in the order of the undivided world, so
+/// messages need no row numbers. Sleeping bodies have no velocity and are left out.
 void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail,
                       RankChannel& channel) {
     mail.start(bodies.peers.size());

@@ -12,7 +12,7 @@ NamedBody name_body(const WorldState& world, Index place) {
         return {whole.handle(model, place), whole.records[static_cast<std::size_t>(place)].name};
     }
     const auto b = static_cast<std::size_t>(row);
-    // The remaining bodies are the meshes of mesh colliders, which have no handle.
+    // Bodies that are not deformable are the meshes of mesh colliders. They have no body handle.
     const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;
     return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
             model.body_records[b].name};

@@ -10,11 +10,11 @@
 namespace skerry {
 
 /// Findings of this rank in an attempt at a step, or the combined findings of all ranks. They name bodies by their rows
-/// in the undivided world, because rows of BodyTable differ between ranks. Every number counts the crossings, elements,
-/// contacts and regions of all ranks once. Sums of energy are not included, because their last digits would depend on
-/// the order of the ranks.
+/// in the undivided world, because rows of BodyTable differ between ranks. In the combined findings, each crossing,
+/// element, contact and region counts once, although several ranks may hold it. Sums of energy are not included,
+/// because their last digits would depend on the order of the ranks.
 struct RankFindings {
-    // First fault of the attempt (StepVerdict).
+    // Fault of the body that comes first in the undivided world (StepVerdict). `fault_value`: size of the fault.
     StepFault fault = StepFault::none;
     Index fault_body = nobody;
     Index fault_node = no_index;         // number of the node within the body
@@ -25,13 +25,14 @@ struct RankFindings {
     Index strained_body = nobody;
     Index unsolved_body = nobody;  // StrainFindings::unsolved
     Index crossings = 0;           // StepFindings::crossings
-    // Inverted elements (Inversions).
+    // Number of inverted tetrahedra, and the first of them (Inversions). `inverts_first`: Inversions::first.
     Index inversions = 0;
     Index inverted_body = nobody;
     Index inverted_tetrahedron = no_index;  // number of the tetrahedron within the body
     bool inverts_first = false;
     bool beyond_lists = false;  // CrossingTable::beyond_lists
-    // The next members are reasons to repeat an attempt that exist only with several ranks.
+    // The next members are used only with several ranks. The attempt is repeated for labels_open, bodies_missing and
+    // ghosts_expired.
     bool labels_open = false;     // the labels of regions had not settled in the last round
     int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
     bool pushed = false;          // RegionTable::pushed
@@ -39,14 +40,14 @@ struct RankFindings {
     bool ghosts_expired = false;  // a body may come near a rank that does not hold it
     bool stop = false;            // a callback of World::advance has asked to end the call
     bool wakes = false;           // a body with several holders wakes in this step
-    bool may_rest = false;        // a body with several holders may have been still long enough after this step
+    bool may_rest = false;        // a body with several holders may be still long enough to sleep after this step
     // Properties of the next step:
     bool moves = false;    // a body is awake or has a speed
     bool far = false;      // a body may be too far from the origin (check_distance)
     RunCounters counters;  // contacts, regions and solver work of the attempt (count_step)
 
-    // Placeholder for no body. It is greater than all row numbers, so that the least number of all ranks is that of a
-    // body.
+    // Placeholder for no body. It is greater than all row numbers, so that the minimum over ranks is a body if any rank
+    // has found one.
     static constexpr Index nobody = std::numeric_limits<Index>::max();
     bool again_over_ranks() const { return labels_open || bodies_missing || ghosts_expired; }
 };

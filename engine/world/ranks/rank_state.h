@@ -18,17 +18,18 @@
 
 namespace skerry {
 
-/// Connection to the other ranks. Every stage that calls a function of Ranks declares a write of it, so that the stages
-/// call in the same order on all ranks.
+/// Connection to the other ranks. Every stage that communicates declares that it writes RankChannel. The task graph
+/// then runs these stages one after the other, in the same order on all ranks.
 struct RankChannel {
     Ranks* ranks = nullptr;
 };
 
-/// Sums over the steps of this rank alone, since they were last added to the records of the run (join_records).
+/// Sums over the steps since the last call of join_records(), for the parts that this rank computes. join_records()
+/// adds them to the records of the run.
 struct RankShare {
     Real dissipated = 0, plastic_work = 0;  // see RunCounters [J]
     Balance balance;                        // only its sums are used
-    // Values of CrossingTable::tested, hits and let_through at the last join.
+    // Values of CrossingTable::tested, hits and let_through after the last call of join_records().
     std::uint64_t tested = 0, hits = 0, let_through = 0;
 };
 
@@ -45,7 +46,7 @@ struct SetMember {
     Index must_stay_up;  // nonzero if a body of the set must stay awake
 };
 
-/// Working memory of the sleep of bodies with several holders.
+/// Working memory for deciding which bodies with several holders fall asleep or wake (sleep_over_ranks.cpp).
 struct RankSleep {
     Column<std::uint8_t> asleep;  // by body
     Column<Real> still_time;      // by body [s]
@@ -108,12 +109,12 @@ struct RankState {
     // For each row of BodyTable: row of the body in the undivided world. These numbers ascend.
     Column<Index> place;
     // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
-    // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
+    // for ghosts. `moved`: upper bound of the path of the body since its holders were found [m].
     Column<Real> margin, moved;
     Column<Real> tried_speed;  // by row of BodyTable: greatest speed in the last attempt at a step [m/s]
     WholeWorld whole;          // empty if `ranks` is null
-    // For each row of the undivided world: number of pieces of the stable-step checks of all bodies before it
-    // (count_pieces).
+    // For each row of the undivided world: number of pieces into which the stable-step checks of all bodies in earlier
+    // rows are divided (count_pieces).
     Column<std::uint64_t> pieces_before;
     // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders
     // (note_ghosts).

@@ -11,7 +11,7 @@ namespace skerry {
 
 struct Parameter {
     std::string name;                 // heading of the parameter's column in tables
-    std::vector<std::string> places;  // places in the scene that are set to the value of the parameter
+    std::vector<std::string> places;  // values of the scene that it sets, e.g. materials.rubber.young_modulus
     Place place;                      // location of the parameter in the file of cases, for error messages
 };
 

@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Rounds to 12 significant digits. This gives 0.3 instead of 0.30000000000000004, and hides differences in the last
-/// bits.
+/// Rounds to 12 significant digits. This gives 0.3 instead of 0.30000000000000004, and hides rounding errors in the
+/// last bits.
 double rounded(double value) {
     return std::strtod(short_text(value, 12).c_str(), nullptr);
 }
@@ -25,8 +25,9 @@ double natural_log(double x) {
         mantissa *= 2;
         --exponent;
     }
-    // With s = (m - 1) / (m + 1), log m = 2 artanh s = 2 s (1 + s^2 / 3 + s^4 / 5 + ...). Since s^2 is at most 0.0295,
-    // the last term of the sum is below 1e-19.
+    // With x = m 2^e, log x = e log 2 + log m. With s = (m - 1) / (m + 1), log m = 2 artanh s = 2 s (1 + s^2 / 3 + s^4
+    // / 5 + ...). Since m is between sqrt(1/2) and sqrt(2), s^2 is at most 0.0295, and the last term of the sum is
+    // below 1e-19.
     const double s = (mantissa - 1) / (mantissa + 1), square = s * s;
     double sum = 0;
     for (int k = 25; k >= 1; k -= 2) sum = sum * square + 1.0 / k;
@@ -35,7 +36,8 @@ double natural_log(double x) {
 
 double exponential(double x) {
     const double turns = std::floor(x / std::numbers::ln2 + 0.5);
-    // remainder of x after whole multiples of ln 2, between -0.35 and 0.35
+    // exp x = 2^turns exp(rest). The remainder `rest` is between -0.35 and 0.35, so that the Taylor series of exp(rest)
+    // up to rest^18 has an error below 1e-25.
     const double rest = x - turns * std::numbers::ln2;
     double sum = 1;
     for (int k = 18; k >= 1; --k) sum = 1 + sum * rest / k;

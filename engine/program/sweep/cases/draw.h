@@ -25,13 +25,14 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// Returns value number `index` of `count` spaced values. The first value is exactly `from` and the last exactly `to`;
-/// the others are rounded to 12 significant digits. For logarithmic spacing `from` and `to` must be above 0.
+/// Returns the value with index `index`, from 0, of `count` values with linear or logarithmic spacing. The first value
+/// is exactly `from` and the last exactly `to`; the others are rounded to 12 significant digits. For logarithmic
+/// spacing `from` and `to` must be above 0.
 double spaced(double from, double to, int count, int index, Spacing spacing);
 
 /// Natural logarithm of a finite number above 0, and exponential function. Both use only basic arithmetic, so that the
-/// results are the same on every machine. The error of the logarithm is below 1e-15 times the larger of 1 and its
-/// absolute value. The relative error of the exponential function is below 1e-15 times the larger of 1 and |x|.
+/// results are the same on every machine. The error of the logarithm is below 1e-15 times the larger of 1 and |log x|.
+/// The relative error of the exponential function is below 1e-15 times the larger of 1 and |x|.
 double natural_log(double x);
 double exponential(double x);
 

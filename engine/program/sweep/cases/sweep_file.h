@@ -43,7 +43,8 @@ struct EnumNames<Distribution> {
     }};
 };
 
-/// A parameter of a grid. Its values are either the list `values`, or `count` numbers between `from` and `to`.
+/// A parameter of a grid. Its values are either the list `values`, or `count` numbers from `from` to `to`, both
+/// included.
 struct GridEntry {
     std::string name;
     OneOrMore<std::string> set;
@@ -54,7 +55,8 @@ struct GridEntry {
     Place place;
 };
 
-/// A parameter with a random value in each case.
+/// A parameter with a random value in each case. `from` and `to` are the ends of the distribution; a normal
+/// distribution has `mean` and `deviation` instead.
 struct DrawnEntry {
     std::string name;
     OneOrMore<std::string> set;
@@ -71,11 +73,12 @@ struct RandomEntry {
 };
 
 struct SweepFile {
-    std::string schema;  // address of the JSON schema, which only editors use
+    std::string schema;  // address of the JSON schema, which only text editors use
     std::string name;
     std::string description;
     FilePath scene;
-    // Values of places in the scene. Every case sets these values before its parameters.
+    // Values by their places in the scene, for example materials.rubber.young_modulus. Every case sets these values
+    // before its parameters.
     Named<AnyValue> set;
     std::vector<GridEntry> grid;
     std::vector<Named<AnyValue>> list;

@@ -21,7 +21,8 @@ Json json_of_figures(const CaseResult& result) {
     return figures;
 }
 
-/// Reads a result from the document of a result file. Throws an exception if write_case has not written the document.
+/// Reads a result from the document of a result file. Throws an exception if the document lacks a key that write_case()
+/// writes, or if a value has another type.
 CaseResult result_from(const Json& json) {
     CaseResult result;
     json.at("case").get_to(result.index);

@@ -38,6 +38,7 @@ struct CaseResult {
 
 /// Data in the result file of a case that identify the case.
 struct CaseHead {
+    // name of the sweep, path of the scene, and hash of the case (see CaseHasher)
     std::string sweep, scene, case_hash;
     Json parameters;  // values of the parameters, by name
     // Assignments with which `skerry run --set` runs the same case.
@@ -55,7 +56,7 @@ void write_case(const std::filesystem::path& file, const CaseHead& head, const C
 /// State of the result file of a case.
 /// - whole: the file has the result of this case.
 /// - missing: the file does not exist.
-/// - other: the file has the result of another case, or is not a result file.
+/// - other: the file has the result of another case or of an earlier version of the scene, or is not a result file.
 enum class CaseFileState { whole, missing, other };
 struct CaseFile {
     CaseFileState state = CaseFileState::missing;

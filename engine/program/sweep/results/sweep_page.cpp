@@ -13,7 +13,7 @@ Json rows_json(const SweepTable& table) {
         Json values = Json::object(), figures = Json::object();
         for (std::size_t p = 0; p < table.cases.parameters.size(); ++p)
             if (table.cases.values[i][p]) values[table.cases.parameters[p].name] = *table.cases.values[i][p];
-        // A value that is not finite becomes null.
+        // Json writes a value that is not finite as null.
         for (const auto& [name, value] : file.result.figures) figures[name] = value;
         rows.push_back(object_of({{"case", i},
                                   {"status", whole ? name_of(file.result.status) : "not run"},

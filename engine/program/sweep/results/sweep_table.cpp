@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_lines = 60;  // largest number of cases in the table on the terminal
 constexpr int most_messages = 10;
-// endings of the numbers of probes that the table on the terminal shows
+// The table on the terminal shows the figures of probes whose names have these endings.
 constexpr const char* shown_of_probes[] = {".slip_m", ".largest_force_max_N", ".largest_von_mises_max_Pa",
                                            ".smallest_volume_ratio_min"};
 
@@ -112,8 +112,8 @@ std::string totals_text(const SweepTable& table) {
     return text + "; " + duration_text(cpu) + " of CPU time in total\n";
 }
 
-/// Returns a note if all cases ended in exactly equal states, which means that the parameters had no effect. Otherwise
-/// returns an empty text.
+/// Returns a note if at least two cases have results and all of these ended in bitwise equal states, because the
+/// parameters then had no effect. Otherwise returns an empty text.
 std::string sameness_text(const SweepTable& table) {
     std::string hash;
     int same = 0;

@@ -19,7 +19,7 @@ Drive: TypeAlias = Literal["position", "speed", "force"]
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A rigid motion: a point `x` of the frame is at `rotation @ x + position`."""
+    """A coordinate frame: the point `x` in the frame is `rotation @ x + position` in outer coordinates."""
 
     position: Reals = field(default_factory=lambda: np.zeros(3))
     rotation: Reals = field(default_factory=lambda: np.eye(3))
@@ -35,7 +35,8 @@ class Frame:
     @property
     def rotation_vector(self) -> Reals:
         """Axis times angle [rad]."""
-        # Each row of the matrix q q^T is a multiple of the unit quaternion q = (x, y, z, w); the longest is most exact.
+        # With the unit quaternion q = (x, y, z, w) of the rotation, `product` is 4 q q^T. Its rows are multiples of q;
+        # the longest row has the smallest relative rounding error.
         matrix = self.rotation
         sums = matrix + matrix.T - np.trace(matrix) * np.eye(3)
         turns = np.array([matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]])
@@ -57,23 +58,25 @@ def turn(vector: ArrayLike) -> Reals:
     x, y, z = vector = np.asarray(vector, float)
     angle = np.linalg.norm(vector)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    # sinc(x) = sin(pi x) / (pi x)
+    # R = I + sin(a) / a K + (1 - cos(a)) / a^2 K^2 with the angle a and K = `cross`; numpy.sinc(x) = sin(pi x) / (pi x)
     result: Reals = np.eye(3) + np.sinc(angle / np.pi) * cross + np.sinc(angle / 2 / np.pi) ** 2 / 2 * (cross @ cross)
     return result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RobotLink:
-    """Links of the file that no joint lets move relative to each other. Vectors are in the frame of the first of them.
+    """A rigid body: links of the file that no joint lets move relative to each other. Vectors are in the frame of the
+    first link.
 
     name: name of the first link.
     members: names of all links.
     parent: name of the link at the other end of its joint; None: the world.
-    place: frame relative to the parent, or to the robot, while the joint has the coordinate `RobotJoint.rest`.
-    moves: True if the file lets the link move. False: nothing lets it move relative to the world.
-    mass: [kg].
-    center_of_mass: [m].
-    inertia: tensor about the centre of mass [kg m^2].
+    place: frame relative to the parent (to the robot if the parent is None), while the joint has the coordinate
+        `RobotJoint.rest`.
+    moves: False if the file fixes the link to the world.
+    mass: mass [kg].
+    center_of_mass: centre of mass [m].
+    inertia: inertia tensor about the centre of mass [kg m^2].
     surface: closed shells of its collision shapes; None if it has none.
     """
 
@@ -95,8 +98,8 @@ class RobotJoint:
     name: name of the joint.
     kind: "hinge", "slider" or "ball".
     link: name of the link.
-    point: [m].
-    axis: unit vector.
+    point: point on the axis, or centre of a ball joint [m].
+    axis: unit vector of the axis.
     rest: coordinate at which the link has the pose `RobotLink.place` [rad or m].
     lower: lower limit of the coordinate; None: no limit [rad or m].
     upper: upper limit [rad or m].
@@ -104,7 +107,7 @@ class RobotJoint:
     drive: quantity that a motor prescribes: "position", "speed" or "force"; None: no motor.
     strength: largest moment or force of the motor [N m or N].
     fastest: largest speed of the motor [rad/s or m/s].
-    mimic: name of another joint, ratio and offset: coordinate = ratio * other coordinate + offset; None: no mimic.
+    mimic: tuple (name of another joint, ratio, offset) for coordinate = ratio * other coordinate + offset, or None.
     """
 
     name: str
@@ -147,12 +150,12 @@ class RobotJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Robot:
-    """A robot of a file, see load_robot().
+    """A robot that load_robot() has read from a file.
 
     name: name of the robot.
     links: the links by name, parents first.
     joints: the joints by name, in the order of the links.
-    apart: pairs of links that do not collide, in addition to links that a joint joins.
+    apart: pairs of names of links that do not collide, in addition to links that a joint connects.
     warnings: parts of the file that are not simulated, each with its element and name.
     """
 
@@ -173,8 +176,9 @@ class Robot:
         return tuple(name for name, joint in self.joints.items() if joint.drive is not None)
 
     def complete(self, coordinates: Mapping[str, float] | None) -> dict[str, float]:
-        """Coordinates of all joints, from those of some joints [rad or m]. Other joints have the coordinate `rest`, or
-        the nearest one within their limits. Joints that mimic follow their leaders."""
+        """Coordinates of all hinges and sliders, from given coordinates of some of them [rad or m]. Without a given
+        coordinate a joint has the value within its limits that is nearest to `rest`. A joint that mimics another one
+        follows it and must not be given."""
         found: dict[str, float] = {}
         for name, value in (coordinates or {}).items():
             if name not in self.coordinate_names:
@@ -214,13 +218,13 @@ class Robot:
         return frames
 
     def with_joints(self) -> Iterator[tuple[RobotLink, RobotJoint | None]]:
-        """The links, each with its joint."""
+        """All links, each with the joint to its parent, or None if it has no joint."""
         of_link = {joint.link: joint for joint in self.joints.values()}
         return ((link, of_link.get(link.name)) for link in self.links.values())
 
 
 def mass_of(parts: list[tuple[float, Reals, Reals]]) -> tuple[float, Reals, Reals]:
-    """Mass [kg], centre of mass [m] and inertia about it [kg m^2] of several parts. parts: these values of each."""
+    """Mass [kg], centre of mass [m] and inertia about it [kg m^2] of a whole. parts: the three values of each part."""
     mass = sum(part[0] for part in parts)
     center = sum((part[0] * part[1] for part in parts), np.zeros(3)) / (mass if mass > 0 else 1)
     inertia = np.zeros((3, 3))

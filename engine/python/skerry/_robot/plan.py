@@ -16,9 +16,9 @@ from .shapes import box_surface, shells
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlannedBody:
-    """The rigid body of a link.
+    """The rigid body that represents a link.
 
-    link: the description.
+    link: description of the link.
     surface: its surface, in the frame of the link. A link without collision shapes gets a cube that does not collide.
     frame: frame of the link in the world.
     held: True if the body does not move.
@@ -36,7 +36,7 @@ class PlannedBody:
 
     @property
     def mass_properties(self) -> dict[str, Any]:
-        """Arguments of World.add_body(). A held body without mass has the density of its material."""
+        """Mass and inertia for World.add_body(). A held body without mass gets the density of its material instead."""
         if self.link.mass == 0 and self.held:
             return {}
         link = self.link
@@ -45,14 +45,14 @@ class PlannedBody:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlannedJoint:
-    """A joint of the body of its link.
+    """A joint between the body of the link `joint.link` and a second body or the world.
 
-    joint: the description.
-    second: name of the link of the other body; None: the world.
+    joint: description of the joint.
+    second: name of the link of the second body; None: the world.
     point: position in the world [m].
     axis: direction in the world.
     coordinate: coordinate at the start [rad or m].
-    motor: the motor that holds this coordinate, or has the speed or force 0; None: no motor.
+    motor: motor with the target `coordinate`, or with the target speed or force 0; None: no motor.
     """
 
     joint: RobotJoint
@@ -71,7 +71,7 @@ class RobotPlan:
     joints: list[PlannedJoint]
 
     def pairs_apart(self, robot: Robot, *, self_collision: bool) -> list[tuple[str, str]]:
-        """Names of the links of bodies that do not collide with each other, see World.add_robot()."""
+        """Pairs of names of links whose bodies do not collide with each other, see World.add_robot()."""
         names = [of.link.name for of in self.bodies]
         pairs = robot.apart if self_collision else itertools.combinations(names, 2)
         return [(first, second) for first, second in pairs if first in names and second in names and first != second]
@@ -90,13 +90,13 @@ def plan_robot(
         is_base = link.parent is None and joint is None
         held = is_base and (not link.moves if fixed is None else fixed)
         if held and link.surface is None:
-            continue  # its joints hold to the world
+            continue  # no body is needed: joints of its children connect them to the world
         with_body.add(link.name)
         plan.bodies.append(PlannedBody(link=link, surface=link.surface or _cube(link), frame=frame, held=held))
         if joint is None:
             continue
         value = values.get(joint.name, 0.0)
-        # Motors with the drive "speed" or "force" start at rest.
+        # Motors with the drive "speed" or "force" start with the target 0.
         target = value if joint.drive == "position" else 0.0
         plan.joints.append(
             PlannedJoint(
@@ -112,8 +112,8 @@ def plan_robot(
 
 
 def _cube(link: RobotLink) -> SurfaceMesh:
-    """A cube at the centre of mass with the mean moment of inertia of the link. A cube of the edge a has m a^2 / 6."""
-    edge = np.sqrt(2 * np.trace(link.inertia) / link.mass) if link.mass > 0 else 0.01  # m
+    """A cube at the centre of mass with the mean moment of inertia of the link: trace / 3 = m edge^2 / 6."""
+    edge = np.sqrt(2 * np.trace(link.inertia) / link.mass) if link.mass > 0 else 0.01  # edge without mass [m]
     cube = shells([(box_surface(np.full(3, edge / 2)), Frame(link.center_of_mass))])
     assert cube is not None
     return cube

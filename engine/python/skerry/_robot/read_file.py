@@ -18,26 +18,26 @@ from .._settings import JointPassive, SurfaceMesh
 from .description import Drive, Frame, Reals, Robot, RobotJoint, RobotLink, mass_of
 from .shapes import box_surface, capsule_surface, cylinder_surface, hull_surface, shells
 
-_KINDS = ("free", "ball", "slider", "hinge")  # by mjtJoint
-_PLANE, _HEIGHTS, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = range(8)  # mjtGeom
+_KINDS = ("free", "ball", "slider", "hinge")  # in the order of mjtJoint
+_PLANE, _HEIGHTS, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = range(8)  # values of mjtGeom
 _CORNERS = 64  # largest number of corners of the convex hull of a mesh
 _PACKAGE = "package://"
-_MESHES = (".stl", ".obj", ".msh")  # types that the package mujoco reads
+_MESHES = (".stl", ".obj", ".msh")  # file types of meshes that the package mujoco reads
 
 
 def load_robot(path: str | os.PathLike[str], *, packages: Mapping[str, str | os.PathLike[str]] | None = None) -> Robot:
-    """Reads a robot from a URDF or MJCF file. Needs the package mujoco.
+    """Reads a robot from a URDF or MJCF file. Needs the package mujoco. A mesh collides as its convex hull with at most
+    64 corners. Robot.warnings lists the parts of the file that are not simulated.
 
-    packages: folders of the packages that a URDF names as package://NAME; by default the folders of these names beside
-        the file, or above it. A mesh collides with its convex hull, of which at most 64 corners are used.
-        Robot.warnings lists what is not simulated.
+    packages: folder of each package that a URDF names as package://NAME; default: a folder of this name that contains
+        the file, or that lies in a folder above the file.
     SceneError: a file is missing or wrong, or a link has several joints."""
     file = Path(path_text(path, "path"))
     return _Reader(file, {name: Path(folder) for name, folder in (packages or {}).items()}).read()
 
 
 class _Reader:
-    """Reads one file. `model` is the compiled model, `spec` the content of the file."""
+    """Reads one file. `spec` is its content and `model` the model that the package mujoco compiles from it."""
 
     def __init__(self, file: Path, packages: dict[str, Path]) -> None:
         self.file = file
@@ -87,9 +87,9 @@ class _Reader:
                     item.name += "_"
 
     def found(self, file: str) -> str:
-        """Path of the file of a mesh."""
+        """Path of a mesh file, for package:// names in the folder of the package. Refuses missing files."""
         if not file:
-            return file  # the MJCF file contains the corners
+            return file  # the MJCF file itself contains the mesh
         if Path(file).suffix.lower() not in _MESHES:
             raise scene_error(
                 "mesh", "filename", f"'{file}'", f"a file of the type {', '.join(_MESHES)}", file=str(self.file)
@@ -110,7 +110,7 @@ class _Reader:
         )  # fmt: skip
 
     def package_folders(self, package: str) -> Iterator[Path]:
-        """Folders that may be the package: one above the file with its name, or beside such a folder."""
+        """Folders with the name of the package that contain the file, or that lie in a folder above the file."""
         for above in self.file.resolve().parents:
             if above.name == package:
                 yield above
@@ -119,7 +119,7 @@ class _Reader:
     def read(self) -> Robot:
         model = self.model
         self.warn_of_elements()
-        self.group = np.zeros(model.nbody, int)  # by body: first body of its link
+        self.group = np.zeros(model.nbody, int)  # for each body: index of the first body of its link
         for b in range(1, model.nbody):
             joined = model.body_parentid[b] == 0 or model.body_jntnum[b] > 0
             self.group[b] = b if joined else self.group[model.body_parentid[b]]
@@ -142,7 +142,7 @@ class _Reader:
     # Links.
 
     def frame(self, positions: Reals, quaternions: Reals, row: int) -> Frame:
-        """A frame of the model."""
+        """Frame from a row of two tables of the model; quaternions are (w, x, y, z)."""
         w, x, y, z = quaternions[row]
         rotation = np.array([
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -191,7 +191,7 @@ class _Reader:
         )
 
     def surface(self, g: int) -> SurfaceMesh | None:
-        """Surface of a shape that collides; None for others."""
+        """Surface of the shape with index `g`; None if the shape does not collide or is not supported."""
         model = self.model
         if model.geom_contype[g] == 0 and model.geom_conaffinity[g] == 0:
             return None
@@ -210,8 +210,8 @@ class _Reader:
             return capsule_surface(size[0], size[1] if kind == _CAPSULE else 0)
         mesh = model.geom_dataid[g]
         nodes = model.mesh_vert[model.mesh_vertadr[mesh] :][: model.mesh_vertnum[mesh]]
-        # The layout of mesh_graph: numbers of corners and faces, a column of the corners, a column with the number of
-        # each corner among the nodes, a column of the edges, and the nodes of each face.
+        # Layout of mesh_graph for v corners and f faces of the hull: v; f; v offsets of edges; indices of the nodes of
+        # the v corners; v + 3 f ends of edges; indices of the three nodes of each face.
         graph = model.mesh_graph[model.mesh_graphadr[mesh] :]
         corners, faces = graph[:2]
         start = 2 + 3 * corners + 3 * faces
@@ -221,7 +221,7 @@ class _Reader:
         return self.model.geom(g).name or f"of body {self.model.body(self.model.geom_bodyid[g]).name}"
 
     def apart(self) -> Iterator[tuple[str, str]]:
-        """Pairs of links that do not collide."""
+        """Pairs of names of links whose collision the file excludes."""
         for exclude in self.spec.excludes:
             first, second = (
                 self.model.body(self.group[self.model.body(name).id]).name
@@ -247,7 +247,7 @@ class _Reader:
         elif damping or friction or model.jnt_stiffness[j] or model.jnt_limited[j]:
             self.warn("joint", name, "limits, stiffness, damping and friction of ball joints are not supported")
         columns = [("armature", model.dof_armature[dof]), ("margin", model.jnt_margin[j])]
-        # Columns of version 4 of the package.
+        # Columns that only version 4 of the package has.
         later = (("jnt_stiffnesspoly", j), ("jnt_springyield", j), ("dof_dampingpoly", dof), ("jnt_actgravcomp", j))
         for column, row in later:
             if (values := getattr(model, column, None)) is not None:
@@ -270,7 +270,7 @@ class _Reader:
         )
 
     def with_drives(self, joints: list[RobotJoint]) -> list[RobotJoint]:
-        """The joints with the motors of the file. A URDF has a motor for each joint with an effort limit."""
+        """The joints with the motors of the file. In a URDF each hinge or slider with an effort limit has a motor."""
         if self.urdf is not None:
             speed = {
                 joint.get("name"): self.fastest(joint.get("name", ""), limit.get("velocity", "inf"))
@@ -304,13 +304,13 @@ class _Reader:
             raise scene_error(f"joint '{joint}'", "velocity", f"'{text}'", "a number", file=str(self.file)) from None
 
     def target_of(self, a: int) -> str | None:
-        """Name of the joint of an actuator."""
+        """Name of the joint that an actuator drives; None if it drives something else."""
         on_joint = 0  # mjTRN_JOINT
         of_joint = self.model.actuator_trntype[a] == on_joint
         return str(self.model.joint(self.model.actuator_trnid[a, 0]).name) if of_joint else None
 
     def drive(self, a: int, joint: RobotJoint) -> tuple[Drive, float] | None:
-        """Drive and strength of an actuator of a joint; None if no motor acts like it."""
+        """Drive and strength of the motor that replaces an actuator of a joint; None if no motor can replace it."""
         model, name = self.model, self.model.actuator(a).name
         gain, bias = model.actuator_gainprm[a], model.actuator_biasprm[a]
         gear = abs(float(model.actuator_gear[a, 0]))
@@ -324,7 +324,7 @@ class _Reader:
         elif model.actuator_biastype[a] != affine or bias[0] != 0:
             return None
         elif bias[1] == -gain[0]:
-            # A servo whose target and coordinate are both within the limits exerts at most the gain times their range.
+            # A servo exerts gain * (target - coordinate). With both within the limits, this is at most gain * way.
             way = 2 * math.pi if joint.lower is None or joint.upper is None else joint.upper - joint.lower
             drive, most = "position", gain[0] * gear * gear * way
         elif bias[1] == 0 and bias[2] == -gain[0]:

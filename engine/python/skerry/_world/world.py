@@ -43,17 +43,17 @@ from .reports import Energy, StepReport, WorldReport, step_report, world_report
 from .surface import SurfaceRules
 
 if hasattr(os, "register_at_fork"):
-    # A fork copies no threads, so that worlds would wait for them for ever.
+    # A fork copies no threads. Worlds in the new process would wait for ever for their threads.
     os.register_at_fork(after_in_child=_core.note_fork)
 
 
 @atexit.register
 def _end_calls() -> None:
     """Ends the calls of daemon threads, which would abort the process after the end of Python."""
-    latest = time.monotonic() + 10  # a callback may wait for ever
+    latest = time.monotonic() + 10  # waits at most 10 s, as callbacks may not end
     while _core.end_calls() and time.monotonic() < latest:
         time.sleep(1e-3)
-    if threading.active_count() > 1:  # a thread that still runs keeps its objects, which are no leaks
+    if threading.active_count() > 1:  # objects of a thread that still runs are no leaks
         _core.hide_leaks()
 
 
@@ -72,9 +72,9 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     World(gravity=(0, 0, 0), threads=1).
 
     One thread at a time may use a world; a call from another thread raises BusyError. Different worlds are independent.
-    copy.copy(), copy.deepcopy() and pickle copy the whole state: the copy continues with the same bits. Functions of
-    watch_steps() are not copied. A copy has the class of the world; its __init__() is not called, and attributes that a
-    subclass adds are not copied."""
+    copy.copy(), copy.deepcopy() and pickle copy the whole state: the copy continues bitwise like the world. Functions
+    of watch_steps() are not copied. A copy has the class of the world; its __init__() is not called, and attributes
+    that a subclass adds are not copied."""
 
     __slots__ = ()
 
@@ -83,7 +83,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         self._hold(_core.World(dataclasses.replace(given, **changes)))
 
     def __init_subclass__(cls) -> None:
-        """Has the __init__() of a subclass raise an error if it does not call that of World."""
+        """Makes the __init__() of a subclass raise AttributeError if it did not call World.__init__()."""
         super().__init_subclass__()
         made: Callable[..., None] | None = cls.__dict__.get("__init__")
         if made is None:
@@ -106,8 +106,8 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     # Copies and files.
 
     def copy(self, *, threads: int | None = None, backend: Backend | None = None) -> Self:
-        """A copy that continues with the same bits on any threads, which are by default those of this world.
-        body.in_copy(copy) is a body in the copy."""
+        """A copy that continues bitwise like this world, with any number of threads; default: the threads and backend
+        of this world. body.in_copy(copy) is the body in the copy that corresponds to `body`."""
         return self._of(self._core.clone(Arguments(of="copy", threads=threads, backend=backend)))
 
     def to_bytes(self) -> bytes:
@@ -119,7 +119,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     def from_bytes(
         cls, data: bytes | bytearray | memoryview, *, threads: int | None = None, backend: Backend | None = None
     ) -> Self:
-        """Makes a world of the bytes of to_bytes()."""
+        """Makes a world from the result of to_bytes()."""
         given = bytes(checked(data, "data", bytes, bytearray, memoryview))
         return cls._of(_core.World.from_bytes(given, Arguments(of="from_bytes", threads=threads, backend=backend)))
 
@@ -129,7 +129,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, threads: int | None = None, backend: Backend | None = None) -> Self:
-        """Reads a world that save() wrote. It continues with the same bits on any threads."""
+        """Reads a world that save() wrote. It continues bitwise like the saved world, with any number of threads."""
         return cls._of(_core.World.load(os.fspath(path), Arguments(of="load", threads=threads, backend=backend)))
 
     def __copy__(self) -> Self:
@@ -156,20 +156,21 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         self_collision: bool = True,
         name: str | None = None,
     ) -> PlacedRobot:
-        """Adds a robot as rigid bodies and joints, all or none of them.
+        """Adds the rigid bodies and joints of a robot. If one of them is refused, none is added.
 
-        robot: the result of load_robot(), or a file for it.
+        robot: result of load_robot(), or path of a file that load_robot() reads.
         material: material of the surfaces.
         position, rotation: pose of the robot (3,) [m, rad].
         coordinates: coordinates of joints by name; default: RobotJoint.rest, or the nearest value within the limits
             [rad or m].
         fixed: True: the base does not move; False: it is free; None: as in the file.
-        motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
-        self_collision: False: links do not collide with each other. With True, only links that a joint joins, and pairs
-            that the file excludes, do not.
-        name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the name of the robot.
+        motors: True: motors start with their joint's coordinate, or with the speed or force 0, as target. False: no
+            motors.
+        self_collision: False: links do not collide with each other. True: they do, except links that a joint connects
+            and pairs that the file excludes.
+        name: NAME in the names NAME/LINK of bodies and NAME/JOINT of joints; default: the name of the robot.
 
-        SceneError: an error in the file, or a value is out of range, or a body has one of the names."""
+        SceneError: the file has an error, a value is out of range, or another body already has one of the names."""
         given = robot if isinstance(robot, Robot) else load_robot(robot)
         place = Frame(np.array(vector(position, "position")), turn(rotation_vector(rotation, "rotation")))
         return add_planned_robot(
@@ -227,11 +228,11 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         each: Callable[[World], object] | None = None,
         progress: bool = False,
     ) -> None:
-        """Advances by `seconds` in calls of advance(dt), of which the last may be shorter.
+        """Advances by `seconds` in calls of advance(dt), the last of which may be shorter. At the end, warns of
+        self-crossings of bodies.
 
-        each: called with the world after each call; if it returns False, the run ends.
-        progress: writes the time and the share of the run to the standard error output. At the end, doubts about the
-            results become warnings."""
+        each: called with the world after each call of advance(); if it returns False, the run ends.
+        progress: True: writes the time and the completed share of the run to the standard error output."""
         seconds = checked_seconds(seconds, "run", "seconds")
         dt = checked_seconds(dt, "run", "dt", zero=False)
         if seconds / dt > _MOST_CALLS:
@@ -253,7 +254,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         because a body slides, the world does not change.
 
         tolerance: largest out-of-balance force of a body, relative to the sum of the forces that act on it.
-        max_steps: largest number of steps for each share of the loads.
+        max_steps: largest number of steps for each load step.
         load_steps: if > 1, loads, pressures and tensions grow from zero in this number of steps, which are halved where
             no equilibrium is found.
         BufferError: arrays of views() are in use."""
@@ -275,7 +276,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
     @contextmanager
     def trace(self, path: str | os.PathLike[str]) -> Iterator[None]:
-        """Records the activity of every worker, and writes it in the Trace Event Format, which Perfetto opens:
+        """Records the activity of every worker in the `with` block as a Trace Event file, which Perfetto opens:
 
         with world.trace("trace.json"):
             world.advance(0.1)
@@ -296,7 +297,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
     @property
     def time(self) -> float:
-        """Time [s]."""
+        """Simulated time since the world was made [s]."""
         return float(self._core.time())
 
     @property
@@ -306,7 +307,8 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
     @property
     def stable_step(self) -> float:
-        """Stable step of the stiffest body, which is the longest step that advance() takes [s]."""
+        """Stable step of the stiffest body, the longest step that advance() takes [s]. If all bodies are rigid or
+        implicit: the step that advance() uses."""
         return float(self._core.stable_step())
 
     @property
@@ -326,7 +328,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     # Control.
 
     def set_gravity(self, gravity: VectorLike) -> None:
-        """Sets the acceleration of all bodies, shape (3,) [m/s^2]."""
+        """Sets the acceleration by gravity, shape (3,) [m/s^2]."""
         self._core.set_gravity(real_array(gravity, "gravity", (3,)))
 
     def set_collision(self, first: Body | Collider, second: Body | Collider, on: bool) -> None:
@@ -340,9 +342,9 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
     def reset(self, saved: World | None = None) -> None:
         """Puts all bodies back into their rest shapes at their first poses. Time, colliders, attachments and loads do
-        not change. With `saved`, a copy of this world: continues from the state of the copy; objects that were added
-        after copying are removed. BufferError: arrays of views() are in use. SceneError: a recorder is in its `with`
-        block, and could not continue at another time."""
+        not change. If `saved`, a copy of this world, is given, the world returns to the state of the copy; objects that
+        were added after copying are removed. BufferError: arrays of views() are in use. SceneError: a recorder is in
+        its `with` block, and `saved` is given: the recorder could not continue at another time."""
         if saved is None:
             self._core.reset()
             return
@@ -360,19 +362,19 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         self._materials.clear()
 
     def _body_first(self, first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
-        """Handles of a body and of a body or a collider, in this order."""
+        """Handles of two objects, at least one of them a body, in an order with a body first."""
         if isinstance(first, Collider):
             first, second = second, first
         return self._own(first, "one of two objects", Body), self._own(second, "second", Body, Collider)
 
     def _with_report(self, observe: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
-        """A function for the extension module that calls `observe` with a report."""
+        """Function for the extension module that converts a dictionary to a StepReport and calls `observe` with it."""
         if observe is None:
             return None
         return lambda values: not is_false(observe(step_report(self, values)))
 
     def _warn_of(self, report: StepReport) -> None:
-        """Warns of doubts about the steps of a call."""
+        """Warns if the steps of a call of advance() give reason to doubt the results."""
         if report.warning:
             self._warn(report.warning, "step", report.limited_by, report.inverted_name)
         if report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
@@ -387,7 +389,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             self._warn(crossing.message, "self_crossing", crossing.name)
 
     def _warn(self, text: str, *cause: str) -> None:
-        """Warns once for each cause."""
+        """Warns with `text`, but only once for each cause."""
         if cause in self._doubts:
             return
         self._doubts.add(cause)

@@ -39,14 +39,15 @@ void require_divisible(const WorldState& world) {
                         "export problems with one process");
 }
 
-/// Sorts the self-crossings as in the undivided world: by the check that found the crossing first, then by row.
+/// Sorts the self-crossings as in the undivided world: by the time of the check that first found the crossing, then by
+/// row of the body.
 void sort_self_crossings(WorldState& world) {
     std::ranges::stable_sort(world.record.self_crossings, {}, [&](const SelfCrossing& found) {
         return std::pair(found.first_time, world.model.body_map.row(found.body));
     });
 }
 
-/// Collective. Returns the message of rank 0.
+/// Collective: all ranks must call it. Returns the message of rank 0; `mine` counts only there.
 RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
     return std::move(ranks.gather_everywhere(mine).front());
 }
@@ -109,7 +110,7 @@ std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSetti
     return extents;
 }
 
-/// Returns the bytes of a divided world without the bodies that have owners.
+/// Returns the bytes of a divided world without the bodies that have owners. Kinematic bodies have none and stay.
 std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     World world = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(world);
@@ -168,8 +169,8 @@ std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSetting
     return extents;
 }
 
-/// Replaces the world of another rank by its part of the world of rank 0. The backend, the number of threads and the
-/// callback of the steps are kept.
+/// On ranks other than 0: replaces the world by the part that rank 0 sends. Keeps the backend, the number of threads
+/// and the step callback of this rank.
 std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSettings& settings) {
     const RankMessage facts = message_of_first(ranks, {});
     MailReader reader(facts);

@@ -16,16 +16,19 @@ namespace {
 
 /// Number of rank searches for which a rank keeps a body that it has requested to solve a region.
 constexpr int searches_of_requests = 8;
-/// Greatest number of steps between two rank searches, so that bodies get new owners when costs have changed.
+/// Greatest number of steps between two rank searches. Bodies that hardly move thus still get new owners when costs
+/// have changed.
 constexpr std::uint64_t steps_between_searches = 1000;
 /// The margin of a body contains the path of this number of steps at its greatest speed and under gravity (margin_of).
 constexpr Real steps_of_margin = 20;
-/// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
+/// Cost of a contact, in units of the cost of an explicit element. It is above 1, because the solver visits a contact
+/// in several iterations.
 constexpr Real contact_cost = 10;
 /// Cost of a body without elements, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
-/// Distance by which a body may move before its holders are found again [m]. `speed`: greatest speed of a node [m/s].
+/// Distance by which a body may move before its holders are found again [m]: about the size of its surface elements,
+/// plus its path in steps_of_margin steps. `speed`: greatest speed of a node [m/s].
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
     const Model& model = world.model;
     Real h = std::max(world.clock.step_before, world.scratch.parameters.h);
@@ -63,7 +66,8 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
             .on_all = model.settings.implicit_step > 0 && bodies.implicit[body].size() > 0};
 }
 
-/// Facts that each rank sends to all others in a rank search.
+/// Start of the message that each rank sends to all others in a rank search: numbers of the rows that follow, and a
+/// flag.
 struct SearchHeader {
     std::uint64_t extents, requests, stale;
     std::uint64_t keeps_owners;  // 1: bodies must not get new owners now
@@ -84,7 +88,8 @@ std::vector<std::uint8_t> owned_bodies(const WorldState& world) {
     return owned;
 }
 
-/// Sorts the rows by unit and rank. Among rows with the same unit and rank, keeps only the one with the most searches.
+/// Sorts the entries by unit and rank. Among entries with the same unit and rank, keeps only the one that lasts for the
+/// most rank searches.
 void keep_longest(std::vector<FetchedUnit>& fetched) {
     std::ranges::sort(fetched, {}, [](const FetchedUnit& of) { return std::tuple(of.unit, of.rank, -of.searches); });
     const auto is_same = [](const FetchedUnit& a, const FetchedUnit& b) {
@@ -192,7 +197,7 @@ private:
 
     const WholeWorld& before_;
     Column<std::int32_t> owner_;
-    std::vector<std::uint8_t> stale_;  // by unit: nonzero if all holders need its rows again
+    std::vector<std::uint8_t> stale_;  // by unit: nonzero if all holders need the rows of its bodies again
     std::vector<std::vector<int>> holders_;
 };
 
@@ -200,7 +205,7 @@ private:
 std::vector<int> partners_of(const HolderChange& change, const WholeWorld& whole, std::span<const BodyExtent> extents,
                              const Ranks& ranks) {
     std::vector<int> partners;
-    if (change.owners_change()) {  // contacts may come from any rank
+    if (change.owners_change()) {  // any rank may send stored contacts of pairs that get a new owner
         for (int rank = 0; rank < ranks.size(); ++rank)
             if (rank != ranks.rank()) partners.push_back(rank);
         return partners;
@@ -252,7 +257,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     note_ghosts(world);
 }
 
-/// Motion of bodies since their holders were found, by row of BodyTable.
+/// Motion of bodies since their holders were last found, and in this attempt; by row of BodyTable.
 struct GhostMotion {
     std::span<const Real> margin, moved;  // RankState [m]
     std::span<const Real> max_speed;      // greatest speed in this attempt [m/s]
@@ -264,8 +269,10 @@ struct GhostMotion {
     }
 };
 
-/// Finds whether a body may leave its box in this step. The reach of the search follows from the speed at the start of
-/// the step. Forces and contacts of the step may accelerate a body beyond it, so the motion of the attempt counts too.
+/// Finds whether a body may leave its box in this step, because its path since the last rank search plus its motion in
+/// this step is not below its margin. The motion is the larger of two values: the reach of the collision search, which
+/// follows from the speed at the start of the step, and the path at the greatest speed in this attempt, after forces
+/// and contacts.
 void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
                   const RunCounters& run, const std::uint64_t& searched_step, RankFindings& mine) {
     const std::span<const Real> reach = search.memory.body_reach;
@@ -279,7 +286,7 @@ void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::spa
     mine.ghosts_expired |= run.steps >= searched_step + steps_between_searches;
 }
 
-/// Adds the motion of a committed step of length `h` [s].
+/// Adds the greatest possible path of each body in a committed step of length `h` [s] to `moved`.
 void measure_paths(std::span<const Real> max_speed, Real h, std::span<Real> moved) {
     for (std::size_t b = 0; b < moved.size(); ++b) moved[b] += max_speed[b] * h;
 }

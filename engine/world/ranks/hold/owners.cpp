@@ -39,7 +39,7 @@ std::uint64_t hilbert_position(std::array<std::uint32_t, 3> cell) {
     return position;
 }
 
-/// A unit of bodies, its cost and its bounding box.
+/// A unit of bodies (WholeWorld::unit) with the sum of the costs and the bounding box of its bodies.
 struct UnitExtent {
     Index unit;
     Real cost = 0;

@@ -13,22 +13,24 @@ namespace skerry {
 /// Properties of a body that decide which ranks own and hold it. Ranks send them to each other.
 struct BodyExtent {
     Index place;
-    Real cost;    // computing time of a step, in units of that of an explicit element
+    Real cost;    // time per step, in units of the time for an explicit element
     Real margin;  // distance by which the body may move inside the box [m]
     Aabb box;     // [m]
     bool on_all;  // true if all ranks must hold the body
 };
 
-/// Chooses an owner for each body, the same one for all bodies of a unit. `extents`: all bodies that can move, in the
-/// order of their rows in the undivided world. Returns the owner for each row of the undivided world.
+/// Chooses the rank that owns each body. All bodies of a unit (WholeWorld::unit) get the same owner. `extents`: all
+/// bodies that can move, in the order of their rows in the undivided world. Returns the owner for each row of the
+/// undivided world.
 Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const BodyExtent> extents,
                                    const RankSettings& settings, int rank_count);
 
-/// Greatest cost of a rank divided by the mean cost.
+/// Greatest cost of a rank divided by the mean cost of the ranks. `owner`: by row of the undivided world.
 Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> extents, int rank_count);
 
-/// For each row of the undivided world, the ranks that hold its body, ascending: the ranks that own a body of its unit,
-/// or a body whose box overlaps the box of a body of its unit. `owner`: by row of the undivided world.
+/// Returns the ranks that hold each body, ascending, by row of the undivided world. All bodies of a unit have the same
+/// holders: the owner of the unit, and the owners of all bodies whose boxes overlap the box of a body of the unit. If a
+/// body of the unit has `on_all`, all ranks hold the unit. `owner`: by row of the undivided world.
 std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
                                            std::span<const BodyExtent> extents, int rank_count);
 

@@ -18,7 +18,7 @@ std::vector<Index> rows_by_slot(std::span<const std::uint32_t> slot) {
     return rows;
 }
 
-/// First body of the unit of each body.
+/// For each body: row of the first body of its unit (WholeWorld::unit).
 Column<Index> units_of(Model& model) {
     UnionFind bodies;
     bodies.start(model.bodies.slot.size());

@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// A rank that holds a unit because it has to solve a region with a body of the unit.
+/// A rank that holds a unit (WholeWorld::unit) because the rank has to solve a region with a body of the unit.
 struct FetchedUnit {
     Index unit;  // WholeWorld::unit
     int rank;
@@ -30,7 +30,7 @@ struct WholeWorld {
     // First row of the unit of the body in the undivided world. A *unit* is a set of bodies that joints, ties, cables,
     // springs and other rows connect. All bodies of a unit have the same owner and the same holders.
     Column<Index> unit;
-    // records of bodies that this rank does not hold: complete on rank 0, else only names
+    // records of bodies that this rank does not hold: complete on rank 0, only names on all other ranks
     std::vector<BodyRecord> records;
     std::vector<Index> place_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
     // Row in the undivided world of each row that connects bodies. Index: table, in the order of
