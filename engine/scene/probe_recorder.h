@@ -13,14 +13,14 @@ struct ProbeRecord {
     std::string name;
     Real stick_time = 0, slide_time = 0, open_time = 0;  // time of sticking, of sliding and without contact [s]
     Real slide_alone_time = 0;           // time during which this probe slides and no other probe does [s]
-    int changes = 0;                     // number of changes between sticking and sliding
+    int changes = 0;                     // changes between sticking and sliding, also across a time without contact
     Real max_slip = 0;                   // largest value of `slip` [m/s]
     Real slip_distance = 0;              // time integral of `slip` [m]
     Real max_von_mises = 0;              // largest value of `von_mises` [Pa]
     std::vector<Real> time;              // times of the samples [s]
     std::vector<int> sticking, sliding;  // numbers of sticking and sliding contacts in each sample
     std::vector<Real> slip;              // mean slip speed of the closed contacts in each sample [m/s]
-    std::vector<Real> von_mises;         // largest stress at the nodes of the probe in each sample [Pa]
+    std::vector<Real> von_mises;         // largest von Mises stress at the nodes of the probe in each sample [Pa]
 };
 
 class ProbeRecorder {
@@ -31,7 +31,8 @@ public:
     void sample(const World& world, Real seconds);
     const std::vector<ProbeRecord>& records() const { return records_; }
     /// Returns the state of the recorder for a checkpoint. go_on() restores this state in a recorder of the same
-    /// probes. For other probes it throws std::out_of_range, and for invalid JSON nlohmann's exceptions.
+    /// probes. It throws std::out_of_range if the probes differ, and an exception of nlohmann::json if the JSON is
+    /// invalid.
     Json saved() const;
     void go_on(const Json& saved);
 
@@ -57,7 +58,7 @@ private:
 };
 
 Json to_json(const ProbeRecord& record);
-/// Reads all members of a record except its name.
+/// Reads all members of a record except its name, which the constructor of ProbeRecorder sets.
 void from_json(const Json& json, ProbeRecord& record);
 
 }  // namespace skerry

@@ -46,7 +46,8 @@ void read_into(SceneFile& scene, const Json& json, const Place& place, std::vect
     rule_of<SceneFile>().read(json, place, scene);
 }
 
-/// `file` is the canonical path of the file; empty for a text that is in no file.
+/// Applies the assignments to `json` and reads it as a scene. `file`: canonical path of the scene file; empty if the
+/// scene is given as a text.
 SceneFile read_scene(Json json, const Place& place, const std::filesystem::path& file,
                      std::span<const std::string> assignments) {
     for (const std::string& assignment : assignments) assign(assignment, place.file(), json);

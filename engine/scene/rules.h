@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-/// Bounds of a number, of each component of a vector, or of the length of a list or text.
+/// Bounds of a number, or of each number in a vector or a list.
 struct Limits {
     std::optional<Real> at_least, above, at_most, below;
 };
@@ -54,7 +54,7 @@ struct Withdrawn {
 
 using KeyNames = std::initializer_list<std::string_view>;
 
-/// A condition on several keys of an object: exactly one, at most one, or all or none of them may be given.
+/// A condition on several keys of an object: exactly one, at most one, or either all or none of them must be given.
 struct KeyGroup {
     enum class Kind { exactly_one, at_most_one, together } kind;
     std::vector<std::string> keys;
@@ -87,7 +87,8 @@ protected:
     void add_group(KeyGroup::Kind kind, KeyNames keys);
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
     void add_check(std::function<void(const Place&, const void*)> check) { checks_.push_back(std::move(check)); }
-    /// Sets the offset of the member in which an object stores its location in the file.
+    /// Sets the offset of the member `place` of an object [bytes]. read_object() stores the object's location in the
+    /// file there.
     void store_place_at(std::size_t offset) { place_offset_ = offset; }
     /// Reads the values of all keys of an object. Throws SceneError if the JSON value is not an object, or if it
     /// violates the rule.
@@ -106,7 +107,7 @@ private:
     std::vector<KeyGroup> groups_;
     std::vector<Withdrawn> withdrawn_;
     std::vector<std::function<void(const Place&, const void*)>> checks_;
-    std::optional<std::size_t> place_offset_;  // [bytes]
+    std::optional<std::size_t> place_offset_;  // see store_place_at(); empty: the object has no such member
 };
 
 template <class V>
@@ -124,14 +125,14 @@ public:
             store_place_at(member_offset(static_cast<Place T::*>(&T::place)));
     }
 
-    /// `Base`: T, or a base class of T.
+    /// Adds a key whose value is stored in `member`. `Base`: T, or a base class of T.
     template <class V, class Base>
     Rule& key(std::string_view name, V Base::*member, const KeyDoc& doc) {
         add_key(name, doc, member_offset(static_cast<V T::*>(member)), {read_value<V>, Value<V>::schema});
         return *this;
     }
-    /// Adds a key whose value sets all members of the object. Keys that are added later replace single members.
-    /// Value<Preset> reads the value into an object of type T.
+    /// Adds a key whose value sets all members of the object. Keys are read in the order in which they were added, so
+    /// keys that are added later can replace single members. Value<Preset> reads the value into an object of type T.
     template <class Preset>
     Rule& preset(std::string_view name, const KeyDoc& doc) {
         add_key(name, doc, 0, {read_preset<Preset>, Value<Preset>::schema});
@@ -145,7 +146,7 @@ public:
         add_withdrawn({key, instead});
         return *this;
     }
-    /// Adds a condition on the values of an object. The function throws SceneError for invalid values.
+    /// Adds a check of an object after its keys were read. `condition` must throw SceneError for invalid values.
     Rule& check(void (*condition)(const Place&, const T&)) {
         add_check(
             [condition](const Place& place, const void* object) { condition(place, *static_cast<const T*>(object)); });

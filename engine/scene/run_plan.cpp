@@ -23,8 +23,8 @@ long RunPlan::frames() const {
 }
 
 double RunPlan::length_of(long frame) const {
-    // The last frame keeps its full length if only rounding makes it shorter. A longer run then has this frame at the
-    // same time.
+    // If only rounding shortens the last frame, it keeps its full length. A longer run of the scene then has a frame at
+    // the same time.
     const double left = seconds - static_cast<double>(frame) * frame_step;
     return left > (1 - slack) * frame_step ? frame_step : left;
 }

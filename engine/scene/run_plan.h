@@ -19,14 +19,14 @@ struct RunPlan {
     double probe_step = 0;               // time between two samples of the probes; 0: there are no probes [s]
 
     long frames() const;
-    /// True if the time between frames is a multiple of probe_step. Then each call of advance in a frame of full length
-    /// ends with a sample of the probes.
+    /// True if there are no probes, or if the time between frames is a multiple of probe_step. In the second case each
+    /// call of advance in a frame of full length ends with a sample of the probes.
     bool even() const;
     /// Returns the times at which the calls of advance in a frame end [s]: multiples of probe_step, then the end of the
     /// frame. Returns nothing for a frame that is divided into `samples` calls of equal length.
     std::vector<double> ends_in(long frame) const;
-    /// Returns the length of a frame, which is the time since the previous frame [s]. The last frame may be shorter
-    /// than the others.
+    /// Returns the simulated time between the previous frame and this one [s]. The last frame may be shorter than the
+    /// others.
     double length_of(long frame) const;
     /// Longest simulated time of a call of advance [s].
     double longest_call() const;
@@ -35,7 +35,8 @@ struct RunPlan {
     double longest_step(const World& world) const;
     /// Throws SceneError if there are more than 1e9 frames. `file`: scene file, for the message.
     void require_countable(const std::filesystem::path& file) const;
-    /// Estimates the number of remaining steps. Each call of advance is divided into equal steps.
+    /// Estimates the number of remaining steps. Each call of advance takes a whole number of equal steps, none longer
+    /// than longest_step().
     double steps(const World& world) const;
 };
 

@@ -43,7 +43,7 @@ struct SkittleMesh {
     Real height = 1;  // [m]
     int resolution = 4;
 };
-/// A mesh in a scene file. Exactly one of the shapes or the file is set.
+/// A mesh in a scene file. Exactly one of the members from `box` to `surface` is set.
 struct MeshEntry {
     std::optional<BoxMesh> box;
     std::optional<BallMesh> ball;
@@ -52,12 +52,12 @@ struct MeshEntry {
     std::optional<SkittleMesh> skittle;
     std::optional<mesh::TableShape> table;
     std::optional<FilePath> file;
-    std::optional<FilePath> surface;  // surface that is filled with tetrahedra, with the three members below
+    std::optional<FilePath> surface;  // surface that is filled with tetrahedra; the next three members control this
     std::optional<Real> edge;
     std::optional<Real> tolerance;
     bool cavities = false;
     Real scale = 1;
-    int refine = 0;  // number of halvings of the edges; < 0: of doublings
+    int refine = 0;  // > 0: number of times that the edges are halved; < 0: doubled
     Place place;
 };
 
@@ -71,11 +71,12 @@ struct EnumNames<WorldAxis> {
     static constexpr std::array<std::pair<WorldAxis, std::string_view>, 3> table{
         {{WorldAxis::x, "x"}, {WorldAxis::y, "y"}, {WorldAxis::z, "z"}}};
 };
-/// A part of a body. At most one of the members is given; an entry that uses the part decides whether one is required.
+/// A part of a body. At most one of `set`, `box` and `nodes` is given. The rules of the derived entries decide whether
+/// one is required.
 struct PartEntry {
     std::optional<std::string> set;  // name of a set of the body
     std::optional<RestBox> box;
-    std::vector<int> nodes;  // numbers of nodes in the mesh file
+    std::vector<int> nodes;  // nodes in the order of the mesh file, counted from 0
     Place place;
 };
 struct SphereRegion {
@@ -89,13 +90,13 @@ struct HalfSpaceRegion {
 };
 /// A named set of a body: the part of the body that meets all given conditions.
 struct SetEntry {
-    OneOrMore<std::string> set;  // names of other sets, of which at least one must contain the part
+    OneOrMore<std::string> set;  // names of other sets; this set lies within their union
     std::optional<RestBox> box;
     std::optional<SphereRegion> sphere;
     std::optional<HalfSpaceRegion> half_space;
     std::optional<int> label;
     bool surface = false;
-    std::vector<int> nodes;  // numbers of nodes in the mesh file
+    std::vector<int> nodes;  // nodes in the order of the mesh file, counted from 0
     Place place;
 };
 struct KeyEntry {
@@ -142,7 +143,7 @@ struct BodyEntry {
     std::optional<MeshEntry> mesh;
     std::optional<BodyShapeEntry> shape;
     std::string material;
-    Named<std::string> materials;  // by label or by name of a set of tetrahedra
+    Named<std::string> materials;  // names of materials, by label or by name of a set of tetrahedra
     Named<SetEntry> sets;
     Vec3 position = Vec3::Zero();
     Rotation rotation;
@@ -220,7 +221,7 @@ struct MotorEntry {
     std::optional<Real> fastest;
 };
 struct MimicEntry {
-    std::string joint;  // name of the leader
+    std::string joint;  // name of the joint that this joint follows
     Real ratio = JointMimic{}.ratio, offset = JointMimic{}.offset;
 };
 struct JointEntry {
@@ -252,7 +253,7 @@ struct CableEntry {
     Real friction = CableSettings{}.friction;
     Place place;
 };
-/// A cavity of a body. Without a part, it has the faces that CavitySettings::faces describes as default.
+/// A cavity of a body. If neither `set`, `box` nor `nodes` is given, it has the default faces of CavitySettings::faces.
 struct CavityEntry : PartEntry {
     std::string name;
     std::string body;
@@ -275,7 +276,7 @@ struct LoadEntry : PartEntry {
     LoadKind kind = LoadKind::force;
     std::optional<std::string> body;
     std::optional<Vec3> force, traction, acceleration, wind;  // [N, Pa, m/s^2, m/s]
-    std::optional<Real> rate;                                 // [1/s]
+    std::optional<Real> rate;                                 // drag: rate of approach to the wind velocity [1/s]
     std::optional<LoadArea> area;
     std::optional<TimeTable> scale;
 };
@@ -333,7 +334,8 @@ struct ProbeEntry {
     Place place;
 };
 
-/// A slider. Exactly one of the lists of names is given.
+/// A slider, with which a user changes a value while the scene runs. Exactly one of the lists of names is given; it
+/// selects the controlled objects.
 struct SliderEntry {
     std::string name;
     OneOrMore<std::string> collider, body, joint, cable, cavity, pipe, spring, load, fibres;
@@ -344,11 +346,11 @@ struct SliderEntry {
     Place place;
 };
 
-/// A scene file that a scene includes. Without a name its content becomes a part of the scene as it is.
+/// A scene file that a scene includes. Without a name, its objects keep their names and poses.
 struct IncludeEntry {
     FilePath scene;
     std::string name;              // prefix of the names of all objects: NAME/OBJECT
-    Vec3 position = Vec3::Zero();  // pose of the frame of the included scene [m]
+    Vec3 position = Vec3::Zero();  // origin of the frame of the included scene [m]
     Rotation rotation;
     Place place;
 };
@@ -383,7 +385,7 @@ struct SceneFile {
 /// first. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
-/// Used in place of the name of the file in messages about a scene that is in no file.
+/// Stands for the file name in messages about a scene that was read from a text.
 inline constexpr const char* scene_text_name = "scene";
 /// Reads the text of a scene file. Relative paths start at `folder`.
 SceneFile read_scene_text(const std::string& json, const std::filesystem::path& folder,

@@ -27,12 +27,13 @@
 
 namespace skerry {
 
-/// A mesh, and the subdivisions that made it from the mesh whose nodes the scene file names by number.
+/// A mesh, and the subdivisions that made it. Node numbers in the scene file refer to the mesh before these
+/// subdivisions.
 struct PlannedMesh : Mesh {
     std::vector<mesh::Subdivision> subdivisions{};
 };
 struct PinPlan {
-    std::vector<Index> nodes;  // local numbers
+    std::vector<Index> nodes;  // node numbers within the body
     Motion motion;
     Vec3 pivot = Vec3::Zero();       // position of the pivot in world coordinates [m]
     std::vector<Vec3> directions{};  // directions along which the nodes are held; empty: all
@@ -53,7 +54,7 @@ struct BodyPlan {
     std::map<std::string, MeshSet> sets;                             // sets of the scene, in addition to Mesh::sets
     std::vector<PinPlan> pins;
     std::vector<SurfacePlan> surfaces;
-    std::shared_ptr<const BoundVisual> visual{};  // bound to the mesh; copies of a body share it
+    std::shared_ptr<const BoundVisual> visual{};  // surface drawn in place of the body; shared by its copies
     Place place;
 };
 struct ColliderPlan {
@@ -132,7 +133,7 @@ struct NoCollisionPlan {
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
-    std::vector<Index> nodes;  // local numbers
+    std::vector<Index> nodes;  // node numbers within the body
 };
 /// A time series to be recorded. The recorded quantity determines which of the following members are used.
 struct SeriesPlan {
@@ -146,7 +147,7 @@ struct SeriesPlan {
     std::size_t cavity = 0;                                // index in ScenePlan::cavities
     std::size_t spring = 0;                                // index in ScenePlan::springs
     std::size_t pin = 0;                                   // index in BodyPlan::pins
-    std::vector<Index> nodes;                              // local numbers
+    std::vector<Index> nodes;                              // node numbers within the body
     std::optional<MaterialPoint> point;
     Place place;
 };
@@ -160,7 +161,7 @@ struct ScenePlan {
     std::vector<std::pair<std::string, MaterialSettings>> materials;
     // one mesh for each mesh file, filled surface and entry of "bodies" without a file; copies of a body share the mesh
     std::vector<PlannedMesh> meshes;
-    std::vector<std::filesystem::path> mesh_files;  // file of each mesh or filled surface; else empty
+    std::vector<std::filesystem::path> mesh_files;  // for each mesh: file of the mesh or surface, or empty
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
@@ -185,21 +186,21 @@ struct ScenePlan {
 /// `progress`: is called with a text about the activity while surfaces are filled. Throws SceneError.
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {},
                      const mesh::FillProgress& progress = {});
-/// Plans a scene that was read with the assignments of `overrides`. Messages name `file`.
+/// Plans a scene that the caller has already read with `overrides.assignments`. `file`: scene file, for messages.
 ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides,
                      const mesh::FillProgress& progress = {});
 
-/// Returns the positions of all copies of a body [m].
+/// Returns for each copy of a body the position of the origin of its mesh [m].
 std::vector<Vec3> positions_of(const BodyEntry& entry);
 
-/// Resolves a part of a body to node numbers, in ascending order unless the scene lists them, or to faces in the
-/// orientation of the surface. The faces are those of mesh::faces_of. Throws SceneError if the entry names no part, an
-/// unknown set, or a part without nodes or faces. Such errors list the sets that exist.
+/// nodes_of() returns the node numbers of a part of a body: in ascending order, or in the order of a list in the scene.
+/// faces_of() returns the faces that mesh::faces_of() finds, oriented as on the surface. Both throw SceneError if the
+/// entry names no part, an unknown set, or a part without nodes or faces. The message lists the existing sets.
 std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 /// Faces of a set of a mesh, as mesh::faces_of finds them.
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh);
-/// Resolves a part of a body that is not complete yet. `sets`: BodyPlan::sets.
+/// Returns the node numbers of a part while the plan of its body is being made. `sets`: BodyPlan::sets.
 std::vector<Index> nodes_of(const PartEntry& part, const PlannedMesh& mesh, const std::map<std::string, MeshSet>& sets);
 
 /// Returns a set of the mesh or of the scene. Throws SceneError if there is none of this name.
@@ -225,8 +226,8 @@ std::vector<std::string_view> names_of(const std::vector<Object>& objects) {
 /// "joint".
 std::size_t find_name(std::span<const std::string_view> names, const std::string& name, const std::string& kind,
                       const Place& place);
-/// Returns the name of an object: `name`, or KIND_NUMBER if that is empty. Throws SceneError if an object of this kind
-/// has the name already. `place`: entry of the object.
+/// Returns `name`, or if it is empty KIND_NUMBER, where NUMBER is the number of names in `taken`. Throws SceneError if
+/// an object of this kind has the name already. `place`: entry of the object.
 std::string choose_name(const std::string& name, std::span<const std::string_view> taken, const std::string& kind,
                         const Place& place);
 /// Returns the index of a body or a collider in a plan. Throws SceneError if the plan has none of this name.
@@ -239,13 +240,13 @@ std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan);
 /// Resolves the names of an anchor. The plan must already contain all bodies and colliders.
 AnchorPlan plan_anchor(const AnchorEntry& entry, const ScenePlan& plan);
 
-/// Bodies and colliders of a world that is being built, in the order of the plan.
+/// Handles of the bodies, colliders and pins of a world that is being built, in the order of the plan.
 struct PlannedHandles {
     const std::vector<BodyHandle>& bodies;
     const std::vector<ColliderHandle>& colliders;
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
 };
-/// Returns a planned anchor in the form that a world takes.
+/// Converts a planned anchor to an Anchor with handles of `world`.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
 
 /// Resolve the names and nodes of ties, cables and springs. The plan must already contain all bodies and colliders.
@@ -255,26 +256,26 @@ SpringPlan plan_spring(const SpringEntry& entry, const ScenePlan& plan);
 
 /// Adds the cavities and pipes of a scene to a plan that already contains all bodies.
 void plan_cavities(const SceneFile& scene, ScenePlan& plan);
-/// Adds the planned cavities and pipes to a world with the given bodies, in the order of ScenePlan::bodies. Returns the
+/// Adds the planned cavities and pipes to a world. `bodies`: handles in the order of ScenePlan::bodies. Returns the
 /// cavities.
 std::vector<CavityHandle> add_cavities(const ScenePlan& plan, const std::vector<BodyHandle>& bodies, World& world);
 
 /// Plans a load. `plan` already contains all bodies.
 LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan);
-/// Adds a planned load to a world with the given bodies, in the order of ScenePlan::bodies.
+/// Adds a planned load to a world. `bodies`: handles in the order of ScenePlan::bodies.
 LoadHandle add_planned(const LoadPlan& load, std::span<const BodyHandle> bodies, World& world);
 
 /// Plans the fibres of an entry. `plan` already contains all bodies.
 FibrePlan plan_fibres(const FibreEntry& entry, const ScenePlan& plan);
 
-/// Adds a probe to a plan that already contains all bodies, colliders and joining objects.
+/// Adds a probe to a plan that already contains all objects that a probe can name (ProbeEntry).
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
-/// Finds the objects of the sliders of a plan in a world whose objects have the names of the plan, and sets the values
-/// that the scene gives for the start. Throws SceneError.
+/// Makes the sliders of a plan. Finds their objects in `world` by name, and sets the start values that the scene gives.
+/// Throws SceneError.
 std::vector<Slider> make_sliders(const ScenePlan& plan, const PlannedHandles& handles, World& world);
 
-/// Gives an object the name that a scene gives; without one, the object keeps the name that the world gave it.
+/// Gives an object its name from the scene. If `name` is empty, the object keeps the name that the world gave it.
 template <class HandleType>
 void name_object(World& world, HandleType object, const std::string& name) {
     if (!name.empty()) ObjectView<HandleType>(world).set_name(object, name);
@@ -284,8 +285,8 @@ void name_object(World& world, HandleType object, const std::string& name) {
 /// Calls added(count), if given, after each body with the number of bodies that were added so far.
 Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>& added = {});
 
-/// Returns the bodies of a scene that was just built, in the order of ScenePlan::bodies. World::bodies() returns bodies
-/// last whose dynamics have changed.
+/// Returns the bodies of a scene that was just built, in the order of ScenePlan::bodies. The order of World::bodies()
+/// differs: a body whose dynamics were changed comes last there.
 std::vector<BodyHandle> bodies_in_order(const World& world);
 
 }  // namespace skerry

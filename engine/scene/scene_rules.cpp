@@ -1,4 +1,4 @@
-// Keys of a scene file: settings, materials, bodies, colliders, probes.
+// Keys of a scene file: settings, materials, bodies, pins, colliders and included files.
 #include "engine/scene/scene_rules.h"
 
 #include <cstdint>
@@ -121,7 +121,8 @@ struct Value<LawBy<Entry>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<Entry>::schema(book, doc); }
 };
 
-/// Reads the name of a law. The law "orthotropic" has elastic constants of its own, so its own key gives it.
+/// Reads the name of a law. Refuses "orthotropic": the key "orthotropic" gives this law, together with its elastic
+/// constants.
 template <>
 struct Value<LawByName> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, MaterialSettings& out) {

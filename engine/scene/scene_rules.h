@@ -108,7 +108,7 @@ const Rule<Settings>& rule_of<Settings>();
 template <>
 const Rule<SceneFile>& rule_of<SceneFile>();
 
-/// A value that is either the path of a file or an object, which has `file` as one of its members.
+/// A value in a scene file: the path of a file, or an object whose member `file` holds the path.
 template <class Entry, FilePath Entry::*file>
 struct PathOrObject {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, Entry& out) {
@@ -152,8 +152,8 @@ struct KeysOfKind {
     std::vector<std::string> required, optional;
 };
 /// Throws SceneError unless the keys of an object suit its kind. `given`: the keys that only some kinds use, and
-/// whether the object has them. `kind`: text such as: the quantity "force". `no_keys`: expected value in the message if
-/// the kind uses none of these keys.
+/// whether the object has them. `kind`: text for the message, for example: the quantity "force". `no_keys`: expected
+/// value in the message if the kind uses none of these keys.
 void check_keys_of_kind(const Place& place, const std::string& kind, const KeysOfKind& keys,
                         const std::vector<std::pair<std::string, bool>>& given, const char* no_keys = "");
 

@@ -31,15 +31,16 @@ void check_slider(const Place& place, const SliderEntry& slider) {
         place.key("pin").refuse("this key in a slider without \"body\"", "a slider with \"body\"");
     if (!(slider.low < slider.high))
         place.key("high").refuse(Json(slider.high).dump(), "more than \"low\", " + Json(slider.low).dump());
-    // The value of a pose is read from its rotation, which is the same at both ends of half a revolution.
+    // The value of the slider is computed from the rotation of its object. Angles of pi and -pi give the same rotation,
+    // so neither is allowed.
     constexpr Real most_turn = std::numbers::pi_v<Real> - 1e-6;
     if (slider.about && std::max(-slider.low, slider.high) > most_turn)
         place.refuse("angles from " + Json(slider.low).dump() + " to " + Json(slider.high).dump() + " rad",
                      "less than half a revolution in each direction, at most 3.14159 rad");
 }
 
-/// Target of a slider that moves a collider or a pin. `motion`: motion of the object by the scene. Throws SceneError if
-/// there is one.
+/// Target of a slider that moves a collider or a pin. `motion`: motion that the scene prescribes for the object. Throws
+/// SceneError if it is not zero.
 template <class HandleType>
 SliderTarget moved(const World& world, HandleType object, const Motion& motion, const Place& place) {
     if (!motion.keys.empty() || !motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0))

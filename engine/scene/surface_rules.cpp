@@ -1,4 +1,5 @@
-// Keys of contacts in a scene file: friction by pair of materials and by place, and objects that do not collide.
+// Keys of contacts in a scene file: friction for pairs of materials and for parts of surfaces, and objects that do not
+// collide.
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {

@@ -19,7 +19,8 @@ namespace skerry {
 struct FilePath {
     std::filesystem::path path;
 };
-/// A rotation, stored as axis times angle. In a scene file a rotation can be written in three forms.
+/// A rotation, stored as axis times angle. In a scene file it is an axis with an angle in degrees or in radians, or a
+/// list of the rows of a matrix.
 struct Rotation {
     Vec3 value = Vec3::Zero();  // [rad]
 };
@@ -93,7 +94,7 @@ struct Value<Rotation> {
     static Json schema(SchemaBook& book, const KeyDoc& doc);
 };
 
-/// A value that changes over time: a number, or a list of pairs [time, value]. The limits of the key apply to each
+/// A value over time: a number if it is constant, or a list of pairs [time, value]. The limits of the key apply to each
 /// value.
 template <>
 struct Value<TimeTable> {
@@ -121,8 +122,8 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
-/// Reads a text, and returns the index of this text in `names`. Throws SceneError if it is not there.
-/// `hint_for_removed`: returns the hint for a name that was removed, empty for others.
+/// Reads a text, and returns the index of this text in `names`. Throws SceneError if `names` does not have it.
+/// `hint_for_removed`: returns the hint for the message if its argument is a removed name, else an empty text.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 

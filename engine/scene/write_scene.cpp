@@ -17,7 +17,8 @@ void for_each_path(const SceneFile& scene, auto use) {
     };
     for (const BodyEntry& body : scene.bodies) {
         if (body.mesh) use_mesh(*body.mesh);
-        // A visual surface and an included scene without other keys can be written as a path alone.
+        // A visual surface or an included scene without other keys can be a text instead of an object. The whole entry
+        // is then replaced by the path.
         if (body.visual)
             use(body.visual->scale ? body.visual->place.key("file") : body.visual->place, body.visual->file.path);
     }
@@ -30,7 +31,8 @@ void for_each_path(const SceneFile& scene, auto use) {
 }  // namespace
 
 std::string path_in_scene(const std::filesystem::path& file, const std::filesystem::path& scene) {
-    // ".." in a path leads out of the folder that a symbolic link names, not out of the folder of the link.
+    // Symbolic links are resolved first, because ".." leads out of the folder to which a link points, not out of the
+    // folder that contains the link.
     const auto folder_of = [](const std::filesystem::path& path) {
         return std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path());
     };

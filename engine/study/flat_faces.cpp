@@ -12,8 +12,8 @@ namespace skerry {
 
 namespace {
 
-// Cosine of the largest angle between neighbouring faces of one smooth surface, 40 degrees: less than that of a
-// cylinder of 8 faces.
+// Cosine of the largest angle between neighbouring faces of one smooth surface, 40 degrees. The faces of a prism with 8
+// sides meet at 45 degrees, so they count as intended edges.
 constexpr Real least_cosine = 0.766;
 
 /// Unit normal of each triangle; zero if it has no area.
@@ -35,8 +35,8 @@ Real angle_at(Index node, const std::array<Index, 3>& triangle, std::span<const 
     return std::atan2(side(1).cross(side(2)).norm(), side(1).dot(side(2)));
 }
 
-/// Normals of the smooth surface of each triangle at its three nodes: means of the normals of the faces, weighted by
-/// the angles of the faces at the node.
+/// For each triangle: normals of the smooth surface to which it belongs, at its three nodes. They are means of the
+/// normals of the faces of this surface at the node, weighted by the angles of the faces there.
 std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
                                                 std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const Vec3> normals) {
@@ -56,7 +56,7 @@ std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
 }
 
 Real largest_angle(std::span<const std::array<Index, 3>> triangles, std::span<const Vec3> normals) {
-    std::map<std::pair<Index, Index>, std::size_t> first;  // triangle of each edge
+    std::map<std::pair<Index, Index>, std::size_t> first;  // first triangle found at each edge
     Real least = 1;
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (std::size_t i = 0; i < 3; ++i) {
@@ -68,7 +68,7 @@ Real largest_angle(std::span<const std::array<Index, 3>> triangles, std::span<co
     return std::acos(least);
 }
 
-/// True for the name of a body of the file, or of one of its copies, which end in a number.
+/// True if `name` is the name of the body of an entry, or of one of its copies. Copies are named `of_entry`_NUMBER.
 bool is_name(const std::string& name, const BodyEntry& body, const std::string& of_entry) {
     if (!body.repeat && body.positions.empty()) return name == of_entry;
     return name.starts_with(of_entry + "_") &&
@@ -78,8 +78,8 @@ bool is_name(const std::string& name, const BodyEntry& body, const std::string& 
 }  // namespace
 
 Real FlatBody::error() const {
-    // Ratio of the error of the displacements to that of the radius: the displacement of a shell under pressure grows
-    // with the square of the radius, and the load acts on the flat faces.
+    // Relative error of the displacements, divided by that of the radius. The displacement of a shell under pressure
+    // grows with the square of the radius, which gives 2. The load acts on the flat faces, which adds 1.
     constexpr Real errors_of_radius = 3;
     return is_held ? errors_of_radius * faces.share : 0;
 }
@@ -90,8 +90,9 @@ FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Ind
     const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes, triangles, normals);
     Real curved = 0, sum = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        // An edge of length L in a surface of curvature k is off by k L^2/8. The mean of the three edges is the mean
-        // over the triangle. The largest curvature of the edges gives the radius.
+        // Along an edge of length L in a surface of curvature k the normal turns by k L, and the middle of the edge is
+        // off by k L^2/8. The mean offset of the three edges stands for the triangle. The largest curvature of the
+        // edges gives the radius.
         Real offsets = 0, curvature = 0, most = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 edge = nodes[static_cast<std::size_t>(triangles[t][(i + 1) % 3])] -

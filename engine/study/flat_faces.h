@@ -18,7 +18,8 @@ struct FlatFaces {
     Real angle = 0;  // largest angle between neighbouring faces of the curved surface [rad]
 };
 
-/// Measures a surface, which may be open. It is not smooth across edges of triangles that meet at more than 40 degrees.
+/// Measures the faces of a surface, which may be open. Edges at which triangles meet at more than 40 degrees count as
+/// edges of the body, not as approximations of a curved surface.
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles);
 
 /// A deformable body whose refined meshes keep the flat faces of a file.
@@ -33,7 +34,7 @@ struct FlatBody {
 /// Returns the bodies of the scene file that have curved surfaces. Bodies of included scenes are omitted.
 std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world);
 
-/// Returns the remarks of a study on these bodies. Bodies with the same mesh and supports share one.
+/// Returns the remarks of a study on these bodies. Bodies with equal remarks share one text.
 std::vector<std::string> flat_texts(std::span<const FlatBody> bodies);
 
 }  // namespace skerry

@@ -44,7 +44,7 @@ double most_cost_of_level(const StudiedScene& scene) {
     return scene.has_explicit ? 16 : 8;
 }
 
-/// Adds the run with the meshes at a level, or the reason why the scene does not have it.
+/// Adds a run with the meshes of `level`. If the scene has no such meshes, the run gets the reason and is left out.
 void add_level_run(const StudiedScene& scene, int level, StudyStage stage, std::vector<PlannedRun>& plan) {
     if (scene.levels.meshes.empty()) return;
     plan.push_back({{.refine = level}, std::pow(most_cost_of_level(scene), level), {}, stage});
@@ -94,7 +94,7 @@ std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
     std::vector<PlannedRun> plan{{{}, 1, {}, StudyStage::start}, {{.draw = 1}, 1, {}, StudyStage::start}};
     add_element_runs(scene, plan);
     plan.push_back({{.step = 0.5}, 2, {}});
-    constexpr double solving = 1.5;  // a contact solver needs about twice the sweeps, which take half of the time
+    constexpr double solving = 1.5;  // the contact solver needs about twice the sweeps, which take half of the CPU time
     plan.push_back({{.tolerance = 0.01}, solving, {}});
     add_level_run(scene, -1, StudyStage::basic, plan);
     if (scene.levels.coarsest <= -2) add_level_run(scene, -2, StudyStage::basic, plan);

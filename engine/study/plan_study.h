@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-/// Scene of a study as it is.
+/// The scene of a study "as it is", without the changes of a variant.
 struct StudiedScene {
     std::filesystem::path path;
     SceneFile file;
@@ -31,7 +31,7 @@ struct StudiedScene {
 StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySettings& settings);
 
 /// Stages of a study. The results of a stage show which runs of the next ones are needed, and how long they take.
-/// - start: the scene as it is, and the first run that begins 1e-12 m apart from it.
+/// - start: the scene as it is, and the first run with a start that is perturbed by 1e-12 m.
 /// - basic: other elements, steps, tolerances and coarser meshes.
 /// - finer: meshes one level finer.
 /// - last: the runs that are made only if a part of the error is not yet known well.
@@ -44,20 +44,22 @@ struct PlannedRun {
     StudyStage stage = StudyStage::basic;
 };
 
-/// Runs that a study of the scene may need, stage by stage, in each stage the most important first. The first is the
-/// scene as it is.
+/// Returns the runs that a study of the scene may need, ordered by stage and then by importance. The first one is that
+/// of the scene as it is.
 std::vector<PlannedRun> plan_study(const StudiedScene& scene);
 
-/// Predicts the costs of the finer meshes from the runs with coarser ones, which are indexed as the plan. A level costs
-/// at most the ratio of the numbers of tetrahedra and steps, and less on small meshes.
+/// Predicts the costs of runs with finer meshes from the runs with coarser ones. `runs` is indexed as `plan`. From
+/// level to level the cost grows at most as the number of tetrahedra times the number of steps; on small meshes it
+/// grows less.
 void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, std::span<PlannedRun> plan);
 
 /// Predicted wall time of runs with these costs, in units of the cost.
 double wall_time(std::vector<double> costs, int threads);
-/// True if a run takes so long that it gets all threads, one run after the other.
+/// True if a run is made alone with all threads, because on one thread it would take longer than all work divided among
+/// the threads. `total`: sum of the costs of the runs that are not made yet.
 bool gets_all_threads(double cost, double total, int threads);
 /// Leaves out runs that do not fit into the budget: a run is left out if it and the chosen runs before it would take
-/// longer than `budget` times the first run. Runs before number `first` are not left out.
+/// longer than `budget` times the first run. Runs with an index below `first` are already made and are not left out.
 void keep_to_budget(double budget, int threads, std::size_t first, std::span<PlannedRun> plan);
 
 /// Assignments with which `skerry run --set` runs a variant. `mean_step`: mean step of the unchanged scene [s].

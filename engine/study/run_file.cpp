@@ -57,7 +57,7 @@ StudyColumn column_from(const Json& json) {
     return column;
 }
 
-/// True if every column has a value for each row, and a run that ended well has rows.
+/// True if every column has a value for each row, and if a run with the status `ok` has rows and columns.
 bool is_whole(const StudyRun& run) {
     if (run.status == StudyRunStatus::ok && (run.time.empty() || run.columns.empty())) return false;
     return std::ranges::all_of(run.columns,

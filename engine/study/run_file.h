@@ -32,8 +32,8 @@ void write_run(const std::filesystem::path& folder, const std::string& inputs, c
 
 /// Result of a run in a folder.
 struct StoredRun {
-    std::optional<StudyRun> run;  // the run, if the file has the given inputs
-    std::string found;            // content of the file, if it exists but has other inputs; else empty
+    std::optional<StudyRun> run;  // the run, if the file holds it with the given inputs
+    std::string found;            // text for a message if the file holds anything but this run; else empty
 };
 StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);
 

@@ -25,7 +25,7 @@ double cpu_clock(bool one_thread) {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// The tractions of a world with the areas of their faces in the present shape.
+/// Returns the surface loads of a world, each with the area of its faces in the present shape.
 std::vector<StudyLoad> loads_of(World& world) {
     std::vector<StudyLoad> found;
     const Loads loads(world);

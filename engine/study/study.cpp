@@ -26,7 +26,7 @@ namespace {
 // Time between two calls of StudySettings::go_on, so that a program reacts to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
-constexpr double usual_budget = 15;  // StudySettings::budget, unless a study is short
+constexpr double usual_budget = 15;  // default of StudySettings::budget; short studies get more, see drop_pointless()
 
 void require_positive(const char* field, double value, const char* expected) {
     if (value > 0 && std::isfinite(value)) return;
@@ -103,7 +103,8 @@ public:
     }
 
 private:
-    /// Makes the runs of a stage, which begin with number `first`. Returns the number of the run after them.
+    /// Makes the runs of a stage, of which the first has the index `first` in `plan_`. Returns the index after the last
+    /// one.
     std::size_t make_stage(StudyStage stage, std::size_t first) {
         if (stop_) return first;
         if (stage == StudyStage::last) drop_unneeded();
@@ -117,8 +118,8 @@ private:
         return end;
     }
 
-    /// Removes runs that the first run has shown to be pointless from the plan: other tolerances without contacts, and
-    /// steps longer than a call of advance.
+    /// Removes runs from the plan that are pointless according to the first run: other tolerances if there are no
+    /// contacts, and steps longer than a call of advance. Raises the default budget if the first run is short.
     void drop_pointless() {
         mean_step_ = runs_[0].time.back() / static_cast<Real>(std::max<std::uint64_t>(runs_[0].steps, 1));
         std::erase_if(plan_, [&](const PlannedRun& planned) {
@@ -130,7 +131,7 @@ private:
         if (!settings_.budget) budget_ = std::max(budget_, short_study / runs_[0].cpu_seconds);
     }
 
-    /// Removes runs of the last stage from the plan that could not change the results.
+    /// Removes from the plan those runs of the last stage that could not change the results.
     void drop_unneeded() {
         choose_columns_by_name(settings_.probes, scene_.path, runs_[0].columns);
         const OpenParts open = open_parts(runs_, settings_);
@@ -140,7 +141,7 @@ private:
         });
     }
 
-    /// Result of the runs, of which at least the first was made.
+    /// Analyses the runs, of which at least the first must have the status `ok`.
     StudyResult analysed() {
         runs_.resize(plan_.size());
         for (std::size_t i = 0; i < plan_.size(); ++i)
@@ -203,7 +204,8 @@ private:
         return inputs;
     }
 
-    /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run.
+    /// Reads run `i` from the folder. Returns true if the folder has it with a result. Throws SceneError if the file
+    /// holds anything else than this run.
     bool read_stored(std::size_t i) {
         if (settings_.folder.empty()) return false;
         StoredRun stored = read_run(settings_.folder, inputs_[i], plan_[i].variant);
@@ -216,7 +218,8 @@ private:
         return true;
     }
 
-    /// Makes the runs from number `first` to the one before `end` that are neither left out nor in the folder.
+    /// Makes the runs with indices from `first` to `end` - 1 that are neither left out nor stored in the folder. Long
+    /// runs are made first, one by one with all threads; then the others at the same time.
     void make_runs(std::size_t first, std::size_t end) {
         std::vector<std::size_t> left;
         for (std::size_t i = first; i < end; ++i) {
@@ -254,7 +257,7 @@ private:
             watch_period, [&] { watch(); });
     }
 
-    /// Throws SceneError if the files of the scene are not those with which the study began.
+    /// Throws SceneError if the files of the scene have changed since the study began.
     void require_unchanged(std::size_t i) const {
         CaseHasher now(scene_.path);
         if (inputs_of(i, now) == inputs_[i]) return;
@@ -307,7 +310,8 @@ private:
             cost += plan_[i].cost;
             done += plan_[i].cost * shares_[i];
         }
-        // Before the first run has ended, the plan still contains runs that will not fit into the budget.
+        // Before the first run has ended, the plan still contains runs that will not fit into the budget, so the total
+        // cost is limited by the budget.
         progress.share = std::min(1.0, done / std::min(cost, budget_ * threads_));
         try {
             if (!settings_.go_on(progress)) stop_ = true;
@@ -328,7 +332,7 @@ private:
     // The following vectors are indexed as the plan.
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run
-    std::vector<std::atomic<double>> shares_;  // simulated shares of the durations
+    std::vector<std::atomic<double>> shares_;  // simulated share of each run's duration, from 0 to 1
     std::atomic<bool> is_lost_{false};
     std::string lost_;  // message about the first run that could not be written; else empty
     std::atomic<int> done_{0}, running_{0};

@@ -101,7 +101,7 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
     for (const BodyHandle body : world.bodies()) names.insert(world.name(body));
     for (const BodyHandle body : bodies_in_order(world)) {
         std::string shown = world.name(body);
-        if (shown == "bodies" || probe_names.contains(shown)) {  // columns of all bodies have the name "bodies"
+        if (shown == "bodies" || probe_names.contains(shown)) {  // statistics of all bodies use "bodies"
             do shown = "body " + shown;
             while (!names.insert(shown).second);
         }
@@ -137,7 +137,8 @@ StudyRecorder::StudyRecorder(Scene& scene)
 void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
     std::string of_all = "bodies";  // name of the columns that summarise all bodies
     while (std::ranges::find(of_scene, of_all, &RecordedProbe::name) != of_scene.end()) of_all = "all " + of_all;
-    // for each quantity of free bodies: name of the statistics, and columns of the recorder with this quantity
+    // for each quantity of bodies without attachments: name and unit for its statistics, and indices of its columns in
+    // the recorder
     std::vector<std::pair<SeriesColumn, std::vector<std::size_t>>> of_bodies;
     const bool keep_bodies = defaults_.size() <= 3 * most_recorded;
     std::size_t c = 1;  // column 0 is the time

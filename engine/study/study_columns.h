@@ -14,7 +14,7 @@ namespace skerry {
 /// body, and the energies. Each call of sample() after a step records a row.
 class StudyRecorder {
 public:
-    /// `scene` must be as it was read, and must outlive the object.
+    /// `scene` must not have been changed or advanced since it was built, and must outlive the object.
     explicit StudyRecorder(Scene& scene);
     StudyRecorder(const StudyRecorder&) = delete;
     StudyRecorder& operator=(const StudyRecorder&) = delete;
@@ -36,7 +36,7 @@ private:
         std::vector<std::size_t> from;  // columns of the recorder
         std::string body{};             // see bodies()
     };
-    /// A column of a largest stress.
+    /// A column of a largest stress, and the node at which this stress is largest in the run so far.
     struct Stress {
         std::size_t column = 0;  // column of the recorder
         StressProbe probe;
@@ -44,7 +44,7 @@ private:
         Real largest = 0;         // largest value so far [Pa]
         Index node = no_index;    // node with this value
     };
-    /// A probe that the scene does not have, and the name that its columns get.
+    /// A probe that the study adds to those of the scene, and the name that its columns get in reports.
     struct DefaultProbe {
         RecordedProbe probe;
         std::string shown;
@@ -67,8 +67,9 @@ private:
     std::size_t rows_ = 0;  // number of rows that `stresses_` and `contacts_` cover
 };
 
-/// Sets StudyColumn::reported: true for the columns that one of the names NAME or NAME.QUANTITY selects. Without names
-/// nothing is changed. Throws SceneError for a name that selects no column. `file`: scene file, for the message.
+/// Sets StudyColumn::reported: true for the columns that a name selects. NAME selects all columns of a probe,
+/// NAME.QUANTITY one of them or all components of a vector. If `names` is empty, nothing is changed. Throws SceneError
+/// for a name that selects no column. `file`: scene file, for the message.
 void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
                             std::vector<StudyColumn>& columns);
 

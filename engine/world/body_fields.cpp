@@ -162,9 +162,9 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     kernels().element_bounds.steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
                                    step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
-        // The steps of single elements are computed with mass shares. They are shorter than the steps with mass forms,
-        // but their ratios are right. All of them are therefore multiplied by one factor, so that the shortest step
-        // equals the stable step with mass forms.
+        // The steps of single elements were computed with scalar shares of the nodal masses. The stable step of the
+        // body is computed with mass forms (mass_forms.h) and is longer. The ratios of the steps of the elements are
+        // right, so all of them are multiplied by one factor that makes the shortest equal to the stable step.
         Real shortest = infinity;
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-/// Fills the contact view with the contacts of the last step. Does nothing if the view is up to date.
+/// Fills RunRecord::contact_view with the contacts of the last step. Does nothing if it is up to date.
 void view_contacts(WorldState& world);
 
 }  // namespace skerry

@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// Largest difference between a perturbed run and the unperturbed run in one row.
+/// Largest difference between a perturbed run and the unperturbed run in one row of a column.
 Real difference_at(const PerturbedRuns& runs, std::size_t column, std::size_t row) {
     Real largest = 0;
     for (const StudyRun* perturbed : runs.perturbed) {

@@ -20,7 +20,7 @@ std::string chaos_text(const StudyResult& result) {
            "named _agreed, and the statistics of all bodies.";
 }
 
-/// Names the runs that ended well and cannot be compared with the scene as it is.
+/// Adds a sentence for each run that ended well but cannot be compared with the run of the scene as it is.
 void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sentences) {
     for (std::size_t i = 0; i < family.all->size(); ++i) {
         const StudyRun& run = (*family.all)[i];
@@ -33,7 +33,7 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
 
 /// The quantities of a study, and the columns that they belong to.
 struct Measured {
-    std::vector<Real> scales, until;     // by column
+    std::vector<Real> scales, until;     // scale of each column, and time up to which runs agree on it [s]
     Real agree_until = infinity;         // StudyResult::agree_until
     std::vector<std::size_t> columns{};  // columns with error bars
     std::vector<MeasuredQuantity> quantities{};
@@ -55,8 +55,8 @@ Measured measure_all(const StudyFamily& family, const StudySettings& settings) {
     for (std::size_t column = 0; column < found.scales.size(); ++column) {
         const StudyColumn& what = family.scene->columns[column];
         if (!what.reported || (what.is_statistic && !found.is_chaotic(family) && reports_bodies)) continue;
-        // Values below the effect of rounding, or of 1e-12 m at the start, are noise, such as the stress of a body in
-        // free flight.
+        // Values below the effect of rounding, or of the perturbation of the start by 1e-12 m, are noise. An example is
+        // the stress of a body in free flight.
         if (settings.probes.empty() && what.what.unit != "m" &&
             family.sizes[column] < agreement_share * found.scales[column])
             continue;
@@ -91,7 +91,8 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
 }
 
 OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings) {
-    // A part that is smaller than these fractions of the wanted error, or of the error bar, is ignored.
+    // Noise below `noise_share` of the wanted error is ignored. So is a step error below `step_share` of the wanted
+    // error or below `share_of_bar` of the error bar.
     constexpr Real noise_share = 0.01, step_share = 0.1, share_of_bar = 0.1;
     const StudyFamily family(runs);
     const Measured measured = measure_all(family, settings);
@@ -100,7 +101,8 @@ OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& set
         const StudyQuantity& r = quantity.result;
         const Real wanted = settings.error * r.scale;
         open.noise |= r.noise > noise_share * wanted;
-        // With two step lengths the step error assumes order 1. A third step length may show that it is smaller.
+        // With two step lengths, the estimate of the step error assumes order 1. A third step length may show a smaller
+        // error.
         open.step |= r.step > step_share * wanted && !(r.step < share_of_bar * r.error);
     }
     return open;

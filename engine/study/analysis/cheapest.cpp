@@ -13,10 +13,10 @@ namespace {
 struct Option {
     StudyVariant variant;
     double cost;
-    bool predicted = false;  // true for a mesh that was not run
+    bool predicted = false;  // true for a mesh with which no run was made
 };
 
-/// Number of mesh levels finer than those that were run for which error and cost are predicted.
+/// Error and cost are predicted for this number of mesh levels beyond the finest one of the runs.
 constexpr int finer_levels = 2;
 constexpr double cost_of_level = 16;  // eight times the elements, twice the steps; used if no finer mesh was run
 
@@ -63,7 +63,7 @@ struct Prediction {
     CheapestSettings settings;
     std::string worst{};
     std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
-    bool may_be_nearest = true;           // false for a mesh that was not run, and for less exact elements
+    bool may_be_nearest = true;           // may be proposed if nothing reaches the error: mesh was run, not linear
 };
 
 Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
@@ -105,8 +105,8 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                 least_error = std::min(least_error, error);
                 if (predictions.back().may_be_nearest) least_measured = std::min(least_measured, error);
             }
-    // If no settings reach the wanted error, the cheapest of the runs within this factor of the smallest error is
-    // proposed.
+    // If no settings reach the wanted error, the cheapest ones are proposed whose error is at most this factor times
+    // the smallest error. Only settings with `may_be_nearest` are compared then.
     constexpr double nearly = 1.1;
     const bool reaches = least_error <= wanted;
     const double target = reaches ? wanted : nearly * least_measured;

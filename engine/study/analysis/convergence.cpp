@@ -8,14 +8,14 @@ namespace skerry {
 namespace {
 
 constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
-// Factor by which error bounds exceed estimated errors. With order 1, which is assumed if there are only two levels,
-// the bound is three times the difference of the levels (Roache 1994).
+// Factor by which error bounds exceed estimated errors (grid convergence index, Roache 1994). For two levels with the
+// ratio 2 and the assumed order 1, the bound of the coarser level is three times their difference.
 constexpr Real safety = 1.5;
-constexpr Real assumed_order = 1;  // order of two levels
+constexpr Real assumed_order = 1;  // order that is assumed if there are only two levels
 // An observed order agrees with the theory if it is between `near_least` times the lowest and `near_most` times the
 // highest order of the theory.
 constexpr Real near_least = 0.5, near_most = 1.5;
-// Two levels that differ by a larger share of the value are too coarse for any order to hold.
+// If two levels differ by more than this share of the size of the value, they are too coarse for any order to hold.
 constexpr Real coarse_share = 0.3;
 
 }  // namespace
@@ -62,7 +62,7 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         // Differences change their sign if two terms of the error have opposite signs, for example a h^2 + b h^3. Such
         // an error is below the estimate of order 1.
     } else if (order_ < near_least * theory.least) {
-        // An order near 0 would predict an unbounded error, so the error is at most the sum of both differences.
+        // An order near 0 predicts an unbounded error, so the estimate is limited to the sum of both differences.
         shape_ = ConvergenceShape::slow;
         used_order_ = 0;
         remainder_ = std::abs(coarse_difference + difference);
@@ -77,7 +77,7 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         shape_ = fast ? ConvergenceShape::fast : ConvergenceShape::regular;
         used_order_ = std::min(order_, theory.most);
         // The fine levels may agree by accident. The error is therefore at least half of the error that the difference
-        // of the coarse levels predicts.
+        // of the coarse levels predicts with the highest order of the theory.
         const Real power = std::pow(ratio, theory.most);
         remainder_ = std::max(remainder(used_order_), std::abs(coarse_difference) / (2 * power * (power - 1)));
     }

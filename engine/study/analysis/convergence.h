@@ -1,4 +1,5 @@
-// Error of a value from the same value at several edge lengths, step lengths or tolerances (docs/methods/study.md 1).
+// Error of a computed value, estimated from runs with several edge lengths, step lengths or tolerances
+// (docs/methods/study.md 1).
 #pragma once
 
 #include <limits>
@@ -35,9 +36,10 @@ enum class ConvergenceShape { unmeasured, two_levels, coarse, regular, equal, sl
 class Convergence {
 public:
     Convergence() = default;
-    /// Needs one level with h = 1. Levels with values that are not finite are omitted. `noise` is the size of
-    /// differences without meaning, for example that of rounding errors. `size`: size of the value. Two levels that
-    /// differ by more than 30 % of it are too coarse for an error estimate by an order.
+    /// Levels with values that are not finite are omitted. Without a level with h = 1, or with only one level, the
+    /// error stays unmeasured. `noise` is the size of differences without meaning, for example that of rounding errors.
+    /// `size`: size of the value. Two levels that differ by more than 30 % of it are too coarse for an error estimate
+    /// by an order.
     Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise, Real size = infinity);
 
     ConvergenceShape shape() const { return shape_; }
@@ -47,8 +49,9 @@ public:
     bool irregular() const;
     /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
     Real error() const { return error_at(1); }
-    /// Error bound of the value at `h`. For h below the finest level it is predicted; without a regular order it
-    /// stays that of the finest level. NaN if h lies between the levels, above them, or if the error is unmeasured.
+    /// Error bound of the value at `h`. For h below the finest level it is predicted with the order; for the shapes
+    /// coarse, slow and oscillating it stays that of the finest level. NaN if h lies between the levels, above them, or
+    /// if the error is unmeasured.
     Real error_at(Real h) const;
     /// Error bound of any other approximation of the same limit; NaN if unmeasured.
     Real error_of(Real value) const;

@@ -44,7 +44,8 @@ Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, R
                                             : found.least;
 }
 
-/// Group of columns with a common scale.
+/// Returns the name of the group of columns that share a scale: the energies or the forces of a probe, or the
+/// components of a vector.
 std::string group_of(const SeriesColumn& column) {
     if (column.unit == "J" || column.unit == "N") return column.probe + " [" + column.unit + "]";
     const std::string& name = column.quantity;
@@ -74,8 +75,8 @@ bool is_contact(const StudyVariant& v) {
 
 /// Growth of a largest stress from mesh to mesh.
 struct StressGrowth {
-    std::vector<Real> rates{};  // growth exponent of each level of the mesh, from coarse to fine
-    bool same_place = false;    // true if the finest two meshes have the largest stress at one place
+    std::vector<Real> rates{};  // exponents a of a stress h^-a between successive meshes, from coarse to fine
+    bool same_place = false;    // true if the two finest meshes have their largest stress near one place
 
     StressGrowth(const StudyFamily& family, std::size_t column, StudyFigure figure) {
         const StudyColumn& scene = family.scene->columns[column];
@@ -101,8 +102,9 @@ struct StressGrowth {
                std::all_of(rates.end() - static_cast<std::ptrdiff_t>(levels), rates.end(),
                            [](Real rate) { return rate > least_rate; });
     }
-    /// True for a stress without a limit. A stress that follows h^-a grows by the same factor in each level. The factor
-    /// of a stress that converges falls towards 1: the exponent falls to a half with order 1, to 0.7 with order 1/2.
+    /// True for a stress without a limit. A stress that follows h^-a grows by one constant factor per level. The factor
+    /// of a converging stress falls towards 1: per level, its exponent is multiplied by 0.5 with order 1, and by 0.7
+    /// with order 1/2.
     bool is_singular() const {
         constexpr Real least_steadiness = 0.75;
         return grows(2) && rates.back() > least_steadiness * rates[rates.size() - 2];
@@ -129,7 +131,7 @@ std::string irregular_text(const char* part, ConvergenceShape shape) {
            ", so the value is not extrapolated; the error bar is a multiple of the largest difference and can be used";
 }
 
-/// Sets the errors and the extrapolated value of a quantity from its families of runs.
+/// Sets the total error and the extrapolated value of a quantity from its convergence and the parts of its error.
 void combine(MeasuredQuantity& quantity) {
     StudyQuantity& r = quantity.result;
     r.error = r.mesh + r.step + r.contact + r.noise;
@@ -173,8 +175,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
-    // `within` is above 0 only for values that vanish with tolerance or step. Values as small as rounding errors get no
-    // verdict.
+    // `within` is above 0 only for values that vanish with tolerance or step. Values as small as rounding errors do not
+    // get the verdict `zero`.
     if (const Real within = family.zero_within[column];
         std::abs(r.value) <= within && within > agreement_share * r.scale) {
         r.error = within;
@@ -214,7 +216,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     if (std::isnan(r.contact))
         return decide(StudyVerdict::not_measured,
                       "the contact error is unknown, because no run with another tolerance has a result");
-    constexpr Real share_of_wanted = 0.1;  // smaller irregular parts do not matter
+    constexpr Real share_of_wanted = 0.1;  // share of the wanted error below which irregular parts are ignored
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
         if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted * r.scale)
@@ -244,7 +246,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
                          short_text(value, 4) + " " + r.unit + ", outside the error bar";
 }
 
-/// Measures the error of a value of each run.
+/// Estimates the error of a value, which value_of() takes from each run.
 template <class ValueOf>
 MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, Real scale, const ValueOf& value_of) {
     const SeriesColumn& what = family.scene->columns[column].what;
@@ -263,7 +265,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
         if (v.element) quantity.elements.emplace_back(v, value);
     }
-    constexpr Real rounding = 1e-9;  // bound that includes the sum of rounding errors over a run
+    constexpr Real rounding = 1e-9;  // bound of the rounding errors that a run accumulates, relative to the scale
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
@@ -271,8 +273,8 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
     quantity.step = Convergence(step, step_theory(*family.scene), noise, family.sizes[column]);
     r.expected_mesh_order = mesh_theory(what).least;
     r.expected_step_order = step_theory(*family.scene).least;
-    // A part that the study has no runs for is zero: rigid bodies have no mesh error, scenes without contacts no
-    // contact error.
+    // A part of the error for which the study has no runs is zero: rigid bodies have no mesh error, scenes without
+    // contacts no contact error.
     const auto error = [&](const Convergence& convergence, auto belongs) {
         const bool planned = std::ranges::any_of(
             *family.all, [&](const StudyRun& run) { return belongs(run.variant) && !run.variant.is_scene(); });

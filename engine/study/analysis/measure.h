@@ -24,8 +24,9 @@ struct StudyFamily {
     // Runs that ended well and have the columns and the number of rows of `scene`; includes `scene`.
     std::vector<const StudyRun*> comparable{};
     std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
-    // Largest size of any run for columns whose values are errors of the contact solver or of the steps; 0 for others.
-    // In a run with a lower tolerance or shorter steps, such values fall below a third.
+    // For each column: 0, or if its values are only errors of the contact solver or of the steps, their largest size in
+    // all runs. Such values are recognised by a run with a lower tolerance or shorter steps, in which they fall below a
+    // third.
     std::vector<Real> zero_within{};
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
@@ -35,7 +36,7 @@ private:
     void find_zeros();
 };
 
-/// A quantity, and the behaviour of its value in each family of runs.
+/// A quantity, and the convergence of its value with the edge length, the step length and the contact tolerance.
 struct MeasuredQuantity {
     StudyQuantity result;
     Convergence mesh{}, step{}, contact{};
@@ -45,15 +46,16 @@ struct MeasuredQuantity {
     Real least_mesh = 0;  // lower bound of the mesh error of linear elements, from a comparison with smoothed elements
 };
 
-/// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since
-/// the start. The components of a vector have the same size, and so have the energies and the forces of a probe.
+/// Returns the size of each column: its largest absolute value in the run, or for lengths and energies the largest
+/// change since the start. The components of a vector share their largest size. So do all energies of a probe, and all
+/// forces of a probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: its size, but at least
 /// - for lengths the rounding error of the size of the body,
 /// - for energies the rounding error of the largest energy of the probe,
-/// - for others, and for lengths, a millionth of the largest size of all columns with this unit,
-/// - the difference that the perturbation of the start makes at once, divided by the share of agreement.
+/// - for all but energies a millionth of the largest size of all columns with this unit,
+/// - the difference that the perturbation of the start makes in the first row, divided by agreement_share.
 std::vector<Real> column_scales(const StudyFamily& family);
 
 /// Returns the figures of a column that get an error bar.
@@ -64,11 +66,11 @@ std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t colum
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
                          Real agree_until, Real wanted);
 
-/// Half width of the error bar of the value that a run with these settings has. Finer meshes than those of the runs are
-/// predicted. NaN if unknown.
+/// Half width of the error bar of the quantity in a run with the settings `variant`. For meshes finer than those of the
+/// runs it is predicted. NaN if unknown.
 Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant);
 
-/// Half width of the error bar of each row of a column.
+/// Half width of the error bar of each row of a column. NaN after `agree_until`, except for statistics of all bodies.
 std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until);
 
 }  // namespace skerry

@@ -23,7 +23,7 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
     line += " +- " + text.error;
     if (!text.parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + text.parts + ")";
-    // The extrapolated value is shown if it is much more exact.
+    // The extrapolated value is shown if its error bar is much shorter.
     constexpr double much = 0.7;
     if (!text.best.empty() && q.best_error < much * q.error) line += ", best " + text.best + " +- " + text.best_error;
     if (!text.orders.empty()) line += ", " + text.orders;
@@ -60,7 +60,8 @@ std::string quantities_text(const StudyResult& result) {
             shown.push_back(&q);
     }
     std::stable_partition(shown.begin(), shown.end(), [](const StudyQuantity* q) { return !is_minor(*q); });
-    // Statistics of all bodies come first: they are reported if there are too many bodies, or if they move chaotically.
+    // Statistics of all bodies come first: the study contains them if the scene has many bodies or if bodies move
+    // chaotically.
     std::stable_partition(shown.begin(), shown.end(), [&](const StudyQuantity* q) { return is_statistic(*q, result); });
     const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
     shown.resize(shown.size() - left);
@@ -122,7 +123,7 @@ std::vector<std::string> verdict_lines(const StudyResult& result) {
 }
 
 std::vector<std::string> missing_lines(const StudyResult& result) {
-    std::vector<std::pair<std::string, std::string>> reasons;  // status and settings, reason
+    std::vector<std::pair<std::string, std::string>> reasons;  // pairs (status and settings of the runs, reason)
     for (const StudyRun& run : result.runs) {
         if (run.status == StudyRunStatus::ok) continue;
         const auto same = std::ranges::find(reasons, run.message, &std::pair<std::string, std::string>::second);

@@ -10,7 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// SI prefix for a number of this size. Units with powers and counts have none.
+/// Factor and name of the SI prefix for a number of this size. Counts, and units with powers such as m^2, get no
+/// prefix.
 std::pair<Real, std::string> prefix_of(Real size, const std::string& unit) {
     static constexpr std::array<std::string_view, 7> with_prefix{"m", "m/s", "N", "N m", "N s", "J", "Pa"};
     static const std::pair<Real, std::string> prefixes[] = {{1e9, "G"},  {1e6, "M"},  {1e3, "k"}, {1, ""},
@@ -21,7 +22,8 @@ std::pair<Real, std::string> prefix_of(Real size, const std::string& unit) {
     return {1, ""};
 }
 
-/// Formats a value to the second digit of its error. If `value` is itself an error, both arguments are equal.
+/// Rounds a value to the second significant digit of its error and returns it as text. If `value` is itself an error,
+/// both arguments are equal.
 std::string to_digit_of(Real value, Real error) {
     constexpr int most_digits = 6, most_decimals = 4;
     if (!(error > 0) || !std::isfinite(error)) return short_text(value, most_digits);
@@ -29,7 +31,7 @@ std::string to_digit_of(Real value, Real error) {
     const int before = value == 0 ? 1 : 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
     if (decimals > most_decimals || before + decimals > most_digits || before > most_digits)
         return short_text(value, value == error ? 2 : most_digits);
-    // A value that rounds to zero has no sign.
+    // A value that rounds to zero is written without a sign, not as -0.
     const bool is_zero = std::abs(value) < 0.5 * std::pow(10, -std::max(decimals, 0));
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", std::max(decimals, 0), is_zero ? 0 : value);
@@ -38,7 +40,7 @@ std::string to_digit_of(Real value, Real error) {
 
 std::string order_text(const char* name, Real order, Real expected) {
     if (!std::isfinite(order)) return {};
-    // Where the theory has a lowest and a highest order, `expected` is the lowest one.
+    // `expected` is the lowest order of the theory. If it is below 2, the theory also allows higher orders, up to 2.
     return std::string(name) + " " + short_text(order, 2) + " (" + (expected < 2 ? "at least " : "") +
            short_text(expected, 2) + " expected)";
 }

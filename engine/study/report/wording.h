@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Describes a variant, for example "1 level finer, steps x 0.5".
+/// Describes a variant, for example "mesh 1 level finer, steps x 0.5".
 std::string variant_text(const StudyVariant& variant);
 
 /// Numbers of a quantity as text. All have the same SI prefix, so that they can be compared.
@@ -16,7 +16,7 @@ struct QuantityText {
     std::string value, error, unit;  // error: empty if unknown, or if the value is "zero within" a number
     std::string parts;               // parts of the error, for example "mesh 2.6, step 0.1"; empty if zero or unknown
     std::string best, best_error;    // empty if unknown
-    std::string share;               // error relative to the scale [%], with the scale if it is not the value
+    std::string share;               // error relative to the scale [%]; names the scale if the value differs from it
     std::string orders;              // for example "order 1.9 (2 expected)"; empty if unknown
 };
 QuantityText quantity_text(const StudyQuantity& quantity);

@@ -1,4 +1,4 @@
-// Changes of a world between steps that neither add nor remove table rows.
+// Functions of the files control_*.cpp that other files use: changes and present states of the objects of a world.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,12 @@
 
 namespace skerry {
 
-/// The keys of a row of a table, as a setting.
+/// Converts the keys of one table row to a TimeTable, which settings use.
 inline TimeTable time_table_of(std::span<const TimeKey> keys) {
     return std::vector<TimeKey>(keys.begin(), keys.end());
 }
-/// State of a world for a function `call` that changes it. Throws SceneError during a call of advance.
+/// Returns the state of a world for a function that changes it. `call`: name of this function, for the message. Throws
+/// SceneError during a call of advance.
 inline WorldState& state_between_steps(World& world, const char* call) {
     WorldState& state = WorldAccess::state_of(world);
     state.require_between_steps(call);
@@ -37,16 +38,16 @@ inline BodyHandle handle_of_body(const Model& model, Index row) {
 /// inside out may remain so.
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
                      const char* field);
-/// Moves the nodes of a body, lets its elements yield, and evaluates the stable step of the body again. In the next
-/// step the contacts and overlaps of the body are searched again.
+/// Moves the nodes of a body, lets its elements yield plastically, and evaluates the stable step of the body again. In
+/// the next step the contacts and overlaps of the body are searched again.
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position);
 /// Changes the attachments of a body so that they hold their nodes at the present positions. `now`: present time [s].
 void hold_here(Model& model, std::size_t body, Real now);
 
 // control_collisions.cpp
 
-/// Enables all disabled pairs of a body or collider. Must be called before the slot of this object is reused, because
-/// pairs name objects by slot.
+/// Enables collisions in all disabled pairs of a body or collider. Must be called before the slot of this object is
+/// reused, because pairs name objects by slot.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 /// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
@@ -61,14 +62,15 @@ CableState cable_state(const WorldState& state, CableHandle cable);
 // control_cavities.cpp
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity);
-/// Stores the present positions of the faces of all open cavities of a body that hold a gas or a liquid. The faces then
-/// sweep no volume when the nodes of the body are placed elsewhere.
+/// Stores the present positions of the faces of a body's open cavities with a gas or a liquid. The volume of such a
+/// cavity changes by the volume that its faces sweep from the stored positions. This function is called after a
+/// placement of nodes, which must not change the volume.
 void renew_corners(Model& model, std::size_t body);
 
 // control_dynamics.cpp
 
-/// Sets the strains of the springs of an explicit body as if the body had been held in its present shape for a long
-/// time, so that all viscous stress has relaxed.
+/// Sets the strains of the springs of the Maxwell elements of an explicit body as if the body had been held in its
+/// present shape for a long time, so that all viscous stress has relaxed.
 void relax_fully(Model& model, std::size_t body);
 
 // control_joints.cpp
@@ -78,7 +80,8 @@ JointState joint_state(const Model& model, JointHandle joint);
 
 // control_materials.cpp
 
-/// The properties that are set. A negative value marks a property that is not set.
+/// Returns the properties that are set, as optional values. In `surface` a negative value marks a property that is not
+/// set.
 SurfaceSettings set_values_of(const SurfaceProperties& surface);
 
 // control_ties.cpp
@@ -96,8 +99,9 @@ FibreState fibre_state(const WorldState& world, FibreHandle fibres);
 
 // control_motion.cpp
 
-/// Moves a collider or an attachment steadily from its present pose to each of the poses in turn, where it stops. Their
-/// times increase, from a time after the present one. Each rotation must be less than half a revolution.
+/// Moves a collider or an attachment from its present pose through all poses, with constant velocities between them,
+/// and stops it at the last one. The times of the poses must increase and be later than the present time. The rotation
+/// from each pose to the next must be less than half a revolution.
 void follow_poses(World& world, ColliderHandle collider, std::span<const Keyframe> poses);
 void follow_poses(World& world, AttachmentHandle attachment, std::span<const Keyframe> poses);
 

@@ -18,7 +18,9 @@ namespace {
 // Directions with a cosine of their angle up to this value count as perpendicular.
 constexpr Real least_oblique = 1e-9;
 
-/// Matrix of AttachmentTable::held for the given directions. Throws SceneError if they are not perpendicular.
+/// Returns the matrix for AttachmentTable::held: its columns are the unit vectors of the directions; the identity if
+/// there are none or three. Throws SceneError unless there are at most three nonzero directions, perpendicular to each
+/// other.
 Mat3 held_directions(const std::vector<Vec3>& directions) {
     if (directions.empty()) return Mat3::Identity();
     if (directions.size() > 3)

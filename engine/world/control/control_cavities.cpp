@@ -50,7 +50,7 @@ Vec3 rest_area(const Model& model, std::size_t body, const Face& face, Vec3& cor
 }
 
 /// Faces around all hollows inside of a body: the connected parts of its surface that enclose a volume outside of the
-/// body. If there is none, all faces.
+/// body. If there is no hollow, all faces.
 std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
     const std::vector<Face>& surface = model.body_records[body].surface;
     std::vector<std::size_t> parent(static_cast<std::size_t>(model.bodies.nodes[body].size()));
@@ -62,7 +62,7 @@ std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
     };
     for (const Face& face : surface)
         for (const Index n : face) parent[root(n)] = root(face[0]);
-    std::vector<Real> outward(parent.size(), 0);  // volume inside of each part of the surface, by its root [m^3]
+    std::vector<Real> outward(parent.size(), 0);  // signed volume of each part by its root, < 0 around a hollow [m^3]
     for (const Face& face : surface) {
         Vec3 corner;
         const Vec3 area = rest_area(model, body, face, corner);
@@ -80,7 +80,7 @@ Face sorted(Face face) {
 }
 
 /// Faces of a cavity, in the orientation of the surface: `wanted`, or by default faces_of_hollows. Throws SceneError if
-/// `wanted` is empty, repeats a face or has one that is not on the surface.
+/// the body has no mesh, or if `wanted` is empty, repeats a face, or has a face that is not on the surface.
 std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::string& object,
                                const std::optional<std::vector<Face>>& wanted) {
     if (model.bodies.core_nodes[body] > 0)
@@ -103,8 +103,8 @@ std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::
     return faces;
 }
 
-/// First edge that does not belong to two of the faces with opposite directions; {no_index, no_index} if the faces are
-/// closed.
+/// Returns an edge that the faces do not pass equally often in both directions, so that they are not closed. Returns
+/// {no_index, no_index} if there is none.
 std::pair<Index, Index> open_edge(const std::vector<Face>& faces) {
     std::map<std::pair<Index, Index>, int> sum;
     for (const Face& face : faces)
@@ -139,7 +139,7 @@ CavityInputs cavities_of(const Model& model) {
     return CavityInputs::bind({}, model.cavities, model.bodies, model.nodes);
 }
 
-/// Present volume of a cavity; 0 if it is not defined [m^3].
+/// Present volume of a cavity [m^3]; 0 for an open cavity with a given pressure, whose volume is not defined.
 Real volume_of_cavity(const Model& model, std::size_t row) {
     const bool known = model.cavities.closed[row] || model.cavities.law[row] != CavityLaw::pressure;
     return known ? cavities_of(model).volume(row) : 0;
@@ -285,7 +285,7 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
     now.faces = table.faces[row].size();
     now.closed = table.closed[row] != 0;
     now.pressure = filling.pressure();
-    now.volume = std::max(filling.volume, Real(0));  // negative if the faces enclose the body and not a hollow
+    now.volume = std::max(filling.volume, Real(0));  // the filling's is < 0 if the faces enclose the body, not a hollow
     now.mass = table.mass[row];
     now.energy = filling.energy();
     const CavityInputs cavities = cavities_of(model);
@@ -297,7 +297,7 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
 
 namespace {
 
-/// Replaces the keys of a row of a table. Returns false if they are equal to the present ones.
+/// Replaces the keys of a table row by those of `wanted`. Returns false if the row already has these keys.
 template <class Table>
 bool replace_keys(Table& table, std::size_t row, const TimeTable& wanted) {
     if (std::ranges::equal(table.keys_of(row), wanted.keys)) return false;
@@ -342,7 +342,7 @@ void require_conductance(const std::string& object, Real conductance) {
         refuse(object, "conductance", short_text(conductance), "a number >= 0 (kg/(s Pa))");
 }
 
-/// Throws SceneError if a cavity at the end of a pipe contains no gas. `field`: this end.
+/// Throws SceneError if a cavity at the end of a pipe contains no gas. `field`: name of the end, for the message.
 void require_gas(const Model& model, const std::string& object, std::size_t cavity, const char* field) {
     if (const CavityLaw law = model.cavities.law[cavity]; law != CavityLaw::gas)
         refuse(object, field, "a cavity with the law " + std::string(name_of(law)), "a cavity with a gas");
