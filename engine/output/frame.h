@@ -16,7 +16,8 @@
 
 namespace skerry {
 
-/// State of a body in one frame of output. The spans refer to the world and are valid until the world changes.
+/// State of a body in one frame of output. The spans refer to arrays of the World and are valid until the world
+/// changes. Values that the FrameContent of collect_frame() does not include are empty.
 struct BodyFrame {
     BodyHandle handle;
     std::string name;
@@ -33,8 +34,9 @@ struct BodyFrame {
     std::vector<Real> node_mesh_error{};         // values by node: mean of mesh_error() over the tetrahedra around it
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
-    // Stretch of the fibres and nominal stress along them [Pa], by cell: 1 and 0 where there are none, those of the
-    // fibres added last where there are several. Empty if the body has no fibres.
+    // Stretch of the fibres, and nominal stress along them [Pa], by cell. A cell without fibres has the stretch 1 and
+    // the stress 0. A cell with several families of fibres has the values of the family added last. Empty if the body
+    // has no fibres.
     std::vector<Real> fibre_stretch{}, fibre_stress{};
     // Surface that is drawn in place of `surface`; nullptr if there is none. See visual_positions and visual_values.
     const BoundVisual* visual = nullptr;
@@ -66,13 +68,13 @@ struct EnumNames<LineKind> {
 /// A joint, tie, cable or spring in one frame of output, as a line through points.
 struct LineFrame {
     LineKind kind = LineKind::joint;
-    std::uint32_t slot = 0, generation = 0;  // members of its handle
+    std::uint32_t slot = 0, generation = 0;  // slot and generation of the object's handle
     std::string name;
-    // Present positions [m]. A cable and a spring have those of their anchors. A tie has those of the nodes that have
-    // not broken off. A hinge and a slider have the ends of a piece of the axis, other joints one point.
+    // Present positions [m]. Cable and spring: the anchors. Tie: the nodes that have not broken off. Hinge and slider:
+    // the two ends of a displayed piece of the axis. Other joints: one point.
     std::vector<Vec3> points{};
-    // Values by point [N]: tension of the segment from this point (cable), force of the spring, positive in tension,
-    // norm of the force on the node (tie) or on the first body (joint).
+    // Force at each point [N]. Cable: tension of the segment that starts at the point. Spring: force, positive in
+    // tension. Tie: norm of the force on the node. Joint: norm of the force on the first body.
     std::vector<Real> force{};
 
     /// True if lines connect consecutive points.

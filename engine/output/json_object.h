@@ -7,17 +7,17 @@
 
 namespace skerry {
 
-/// JSON document that keeps the order of its keys. A document that was read has the order of the file, a schema has the
-/// order of the key tables. Numbers that are not finite become null.
+/// JSON document that keeps the order of its keys. A document that was read has the order of its file, a generated
+/// schema that of the tables that define the keys. Numbers that are not finite become null.
 using Json = nlohmann::ordered_json;
 
 /// A key of a JSON object, and its value.
 struct JsonMember {
     const char* key;
-    mutable Json value;  // object_of() moves it
+    mutable Json value;  // mutable: object_of() moves it out of a const initializer list
 };
-/// Returns the JSON object with these members. The constructor of the library does the same with several times the code
-/// at each call.
+/// Returns the JSON object with these members. The initializer-list constructor of nlohmann::json gives the same
+/// object, but compiles to several times as much code at each call.
 inline Json object_of(std::initializer_list<JsonMember> members) {
     Json::object_t object;
     for (const JsonMember& member : members) object.emplace(member.key, std::move(member.value));

@@ -28,15 +28,15 @@ inline std::string count_text(double count) {
     return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_text(count);
 }
 
-/// Formats a value with an SI prefix, so that one to three digits precede the decimal point: (0.00031, "s") gives "310
-/// us".
+/// Formats a value with an SI prefix from nano to giga, so that one to three digits precede the decimal point:
+/// (0.00031, "s") gives "310 us". Values below 1e-9 get no prefix, values from 1e12 on get more digits.
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
         double factor;
         const char* name;
     };
     constexpr Prefix prefixes[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
-    constexpr double rounds_up = 0.9995;  // with three digits this share of a unit is printed as 1
+    constexpr double rounds_up = 0.9995;  // rounded to three digits, 0.9995 is 1
     const double size = value < 0 ? -value : value;
     for (const Prefix& prefix : prefixes)
         if (size >= rounds_up * prefix.factor) return short_text(value / prefix.factor) + " " + prefix.name + unit;
@@ -50,7 +50,8 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    // A unit is used if the duration is at least this many of it, and seconds if no other unit is.
+    // Number of minutes, hours or days from which the duration is given in this unit. Shorter durations are given in
+    // seconds.
     constexpr double enough = 2;
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_text(seconds / unit.seconds) + unit.name;

@@ -14,13 +14,14 @@ struct PlanePatch {
     Real half_size = 1;          // [m]
 };
 
-/// Returns the part of all planes to display, with its centre in world coordinates: a square around the bodies. Its
-/// edge is twice the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
+/// Returns a patch around the bodies, to be displayed for every plane. Its centre is in world coordinates. Half of its
+/// edge is the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
 std::optional<PlanePatch> patch_around(std::span<const BodyFrame> bodies);
 
-/// Returns a triangle mesh of a shape in the frame of the shape. Triangles are counter-clockwise as seen from outside.
-/// Curved shapes have 48 facets around their axis. Vertices are duplicated along sharp edges, so that averaged normals
-/// shade the edges correctly.
+/// Returns a triangle mesh of a shape in the frame of the shape. `patch`: displayed part of a plane, with its centre in
+/// the frame of the plane; not used for other shapes. Triangles are counter-clockwise as seen from outside. Curved
+/// shapes have 48 facets around their axis. Vertices are duplicated along sharp edges, so that averaged normals shade
+/// the edges correctly.
 SurfaceMesh shape_picture(const Shape& shape, const PlanePatch& patch);
 
 /// Transforms a point from the frame of a shape to world coordinates.

@@ -23,7 +23,8 @@ struct RunStart {
 };
 
 /// One output of a run. All functions may throw. If the constructor or open() throws, the run does not start. If
-/// another function throws, only this output ends and the run continues. The constructor must not create files.
+/// another function throws, only this output ends and the run continues. The constructor must not create files, because
+/// the run may still be refused.
 class Writer {
 public:
     virtual ~Writer() = default;
@@ -39,7 +40,8 @@ public:
     virtual void add_frame(const World&) {}
     /// Completes the files of the output. Called once, after the last step.
     virtual void close(const World&) {}
-    /// Wall time that the output has spent inside calls of World::advance [s].
+    /// Wall time that callbacks of the output have taken inside World::advance [s]. The run reports it as time of the
+    /// outputs, not of the simulation.
     virtual double seconds_in_steps() const { return 0; }
     /// Description of the written files for the user, for example "page.html (open it in a browser)".
     virtual std::string written() const = 0;

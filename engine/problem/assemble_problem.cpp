@@ -42,8 +42,8 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     return touches;
 }
 
-/// Finds the stencil weights of a group of nodes in all contacts. In the result Touch::node is the position of the node
-/// in the group.
+/// Finds the stencil weights of a group of nodes in all contacts. In the result, Touch::node is the index of the node
+/// within the group.
 class GroupTouches {
 public:
     explicit GroupTouches(const LumpedContacts& contacts) : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
@@ -66,7 +66,9 @@ private:
     std::vector<std::size_t> place_;
 };
 
-/// Adds the blocks of W between contacts on the same rigid body.
+/// Adds the blocks of W between contacts on the same rigid body, and between contacts on the same implicit body due to
+/// its rigid motion. Contacts with the weights w_a, w_b and the arms x_a, x_b are coupled by w_a w_b (I / m + [x_a]
+/// J^-1 [x_b]^T), where m is the mass, J the inertia tensor, and [x] v = x cross v.
 void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     const auto crossing = [](const Vec3& v) {
@@ -95,7 +97,7 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
     }
 }
 
-/// Adds the blocks of W between contacts on the same implicit body, due to its deformation.
+/// Adds the blocks of W between contacts on the same implicit body, due to the deformation of this body.
 void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     for (const StrainedPoints& body : contacts.strained) {
@@ -152,8 +154,9 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
-                // Block S_ij of docs/methods/contact.md 2.1, which is bitwise symmetric. A diagonal block is a multiple
-                // of the identity, so it is equal in every contact frame.
+                // Contribution of one node to W_ij = S_ij I (docs/methods/contact.md 2.1), rotated into the contact
+                // frames; bitwise symmetric. In a diagonal block both frames are the same and cancel, so it is not
+                // rotated, which would add rounding errors.
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-/// Returns the number of the block in row i and column j; the number of all blocks if it is not stored.
+/// Returns the index of the block in row i and column j. If this block is not stored, returns the number of blocks.
 std::size_t block_at(const ContactProblem& problem, std::size_t i, std::size_t j) {
     const auto begin = problem.column.begin() + problem.row_offset[i];
     const auto end = problem.column.begin() + problem.row_offset[i + 1];
@@ -21,7 +21,7 @@ std::size_t block_at(const ContactProblem& problem, std::size_t i, std::size_t j
 }
 
 /// True if the blocks W_ij and W_ji are transposes of each other, apart from errors in the assembly of W. In problems
-/// of the FCLIB collection these errors reach 0.004 of a diagonal block.
+/// of the FCLIB collection these errors reach 0.004 of the norm of a diagonal block.
 bool symmetric(const ContactProblem& problem, std::size_t i, std::size_t j) {
     constexpr Real tolerance = 0.01;  // largest asymmetry, as a fraction of the larger of the two diagonal blocks
     const auto block = [&](std::size_t row, std::size_t column) -> Mat3 {

@@ -13,8 +13,8 @@ namespace {
 using SparseMatrix = Eigen::SparseMatrix<Real>;
 using Factors = Eigen::SimplicialLDLT<SparseMatrix>;
 
-/// Independent blocks of the mass matrix M, here called parts. A part is usually a body: no entry of M connects two
-/// parts.
+/// Parts of the mass matrix M: groups of degrees of freedom such that no entry of M connects two groups. A part is
+/// usually a body.
 struct MassParts {
     std::vector<Index> part, place;  // for each degree of freedom: number of its part of M, and its index in this part
     std::vector<Index> size;         // number of degrees of freedom of each part of M
@@ -121,7 +121,7 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
         pushed = h.middleCols(3 * begin, 3 * (end - begin));
         const Eigen::MatrixXd moved = factors.solve(pushed);
         const Eigen::MatrixXd w = h.transpose() * moved;
-        // Computes one triangle of W and mirrors it, so that W is bitwise symmetric.
+        // Only blocks with i <= j are used, and mirrored, so that W is bitwise symmetric.
         for (Index j = begin; j < end; ++j)
             for (Index i = 0; i <= j; ++i) {
                 Mat3 block = w.block<3, 3>(3 * i, 3 * (j - begin));

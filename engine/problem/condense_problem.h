@@ -1,5 +1,5 @@
-// Converts the global form of a contact problem (M v = H r + f, u = H^T v + w) to the local form (u = W r + q): W = H^T
-// M^-1 H, q = H^T M^-1 f + w.
+// Converts the global form of a contact problem (M v = H r + f, u = H^T v + w) to the local form (u = W r + q), where W
+// = H^T M^-1 H and q = H^T M^-1 f + w.
 #pragma once
 
 #include <string>
@@ -11,11 +11,12 @@
 namespace skerry {
 
 /// Global form of a contact problem: M v = H r + f, u = H^T v + w. M is the mass matrix, v the velocities of the
-/// bodies, r the impulses, and u the relative velocities at the contacts.
+/// bodies, r the impulses, u the relative velocities at the contacts, f the momenta that the bodies would have without
+/// contacts, and w the prescribed part of u.
 struct GlobalProblem {
     MatrixEntries mass;        // mass matrix M, symmetric positive definite
     MatrixEntries directions;  // matrix H of contact directions, three columns per contact
-    std::vector<Real> force;   // f
+    std::vector<Real> force;   // f, one entry per degree of freedom
 };
 
 /// Reason why the mass matrix cannot be used. Both texts are empty if it can be used.

@@ -15,7 +15,8 @@ namespace skerry {
 
 namespace {
 
-/// A linear function of velocities. An impulse along it acts with the same coefficients.
+/// A linear function of velocities, u = sum of along . velocity + turn . angular velocity. An impulse s of the row acts
+/// on each node and body with the same coefficients: impulse s along, angular impulse s turn.
 struct VelocityRow {
     struct OnNode {
         Index node;
@@ -23,10 +24,10 @@ struct VelocityRow {
     };
     struct OnFrame {
         Index frame;       // row of RigidBodyTable
-        Vec3 along, turn;  // coefficients of the velocity [1] and of the angular velocity [m]; for axes: 0 and [1]
+        Vec3 along, turn;  // coefficients of velocity [1] and angular velocity [m]; for rows of rotations: 0 and [1]
     };
-    std::vector<OnNode> nodes;    // velocities of nodes; on implicit bodies, of their deformation
-    std::vector<OnFrame> frames;  // velocities and spins of rigid and implicit bodies
+    std::vector<OnNode> nodes;    // coefficients of node velocities; on implicit bodies, relative to the frame
+    std::vector<OnFrame> frames;  // coefficients for rigid and implicit bodies as a whole
 
     void add_frame(Index frame, const Vec3& along, const Vec3& turn) {
         for (OnFrame& of : frames)
@@ -39,8 +40,9 @@ struct VelocityRow {
     }
 };
 
-/// The quantity that a row keeps from the step: its velocity, or its impulse. `held`: the row keeps its velocity, and
-/// its impulse is not known.
+/// The quantity of an equation that stays that of the step when contact impulses change. `velocity`: its velocity; its
+/// impulse in the step is known. `held`: its velocity too, but its impulse in the step is not known. `impulse`: its
+/// impulse.
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
@@ -49,13 +51,14 @@ struct EquationRow {
     Real impulse = 0;  // [N s] or [N m s]
 };
 
-/// Inverse masses of a step.
+/// Computes velocity changes due to impulses, from the inverse masses of a step.
 class Mobilities {
 public:
     explicit Mobilities(const RegionInputs& inputs) : inputs_(inputs) {}
 
-    /// Adds `scale` times the velocity of a node of a stencil, along a direction. `acts_at`: point on the frame of the
-    /// node; `beside`: further arm, times the weight [m].
+    /// Adds `weight` times the velocity of a node along a direction to a row. `acts_at`: point of the node's body at
+    /// which the row acts; nullptr: the node itself. `beside`: additional lever arm, already multiplied by the weight
+    /// [m].
     void add_node(VelocityRow& row, Index node, Real weight, const Vec3& along, const Vec3* acts_at,
                   const Vec3& beside) const {
         const auto n = static_cast<std::size_t>(node);
@@ -82,7 +85,8 @@ public:
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
-            // Vector from the core of a round body to the contact point. It counts once, with the first core node.
+            // Lever arm from the core of a round body to the contact point. beside_core() already contains the sum of
+            // the weights, so the arm is added with the first core node only.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& of) { return of.frame == frame; });
@@ -93,7 +97,7 @@ public:
         }
         return row;
     }
-    /// Rate of row `a` per impulse along row `b`.
+    /// Velocity change of row `a` per unit impulse of row `b`.
     Real coupling(const VelocityRow& a, const VelocityRow& b) const {
         Real sum = 0;
         for (const auto& of_a : a.frames)
@@ -108,7 +112,7 @@ public:
         return sum;
     }
     /// Calls visit(leader) for each node and frame of a row. The leader is a node that represents all nodes whose
-    /// masses are coupled.
+    /// masses are coupled with each other: those of a cluster, or of a rigid or implicit body.
     void for_each_leader(const VelocityRow& row, auto&& visit) const {
         for (const auto& of : row.frames) visit(leader_of_frame(of.frame));
         for (const auto& of : row.nodes) visit(leader_of_node(of.node));
@@ -121,7 +125,7 @@ public:
     }
 
 private:
-    /// Velocity of node `a` by the impulse `impulse` on node `b`, without the motion of frames.
+    /// Velocity change of node `a` due to the impulse `impulse` on node `b`, without the motion of frames.
     Vec3 of_nodes(Index a, Index b, const Vec3& impulse) const {
         const Index frame = inputs_.rigid.nodes.row(a);
         if (frame != no_index) {
@@ -174,7 +178,7 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
         const Vec3& impulse = joints.impulse[j];
         if (const Real c = block.mimic.coefficient; c != 0) {
             VelocityRow row = row_of_joint(block, inputs, c * block.frame.col(2));
-            if (block.mimic.leads) {  // the last row is that of the joint that mimics
+            if (block.mimic.leads) {  // rows.back() is the row of the joint that mimics this one
                 for (const auto& of : row.frames) rows.back().row.add_frame(of.frame, of.along, of.turn);
                 continue;
             }
@@ -187,7 +191,8 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
     }
 }
 
-/// Adds the rows of ties. The direction of the row of a slide is the impulse vector itself, so its impulse is 1.
+/// Adds the rows of welds and slides. A weld has three rows, along the world axes. A slide has one row along the
+/// impulse vector of the step, so the impulse of this row is 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -199,7 +204,8 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
     }
 }
 
-/// Adds a row for each point of a cable. Its direction is the vector of the impulse on the point, so its impulse is 1.
+/// Adds a row for each point of a cable. The direction of the row is the impulse vector on the point, which its two
+/// segments exert, so the impulse of the row is 1.
 void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                 std::vector<EquationRow>& rows) {
     Vec3 last = Vec3::Zero();
@@ -210,7 +216,7 @@ void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mo
     }
 }
 
-/// A ball has three rows, each the sum of one component over all points.
+/// Adds the three rows of a ball tie. Each is the sum of one velocity component over all points of the tie.
 void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                std::vector<EquationRow>& rows) {
     for (Index k = 0; k < 3; ++k) {
@@ -224,16 +230,19 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
     }
 }
 
-/// Part of an inverse mass that counts as zero. It is the square of an angle of 3e-4 rad: the solver's tolerance lets
-/// redundant joints drift apart by smaller angles.
+/// In a matrix scaled to a unit diagonal, eigenvalues up to this value count as zero. If the directions of two rows
+/// differ by a small angle, the smallest eigenvalue is of the order of the square of the angle. The value belongs to an
+/// angle of 3e-4 rad: the solver's tolerance lets redundant joints drift apart by smaller angles.
 constexpr Real negligible_part = 1e-7;
 
-/// Part of its inverse mass along the normal below which a contact counts as immovable: the square of an angle of
-/// 1e-3 rad. It may exceed `negligible_part`, because q keeps the impulses of these contacts.
+/// A contact counts as immovable if elimination reduces its inverse mass along the normal to less than this fraction:
+/// the square of an angle of 1e-3 rad (see negligible_part). The value may exceed `negligible_part`, because immovable
+/// contacts keep their impulses of the step in q.
 constexpr Real immovable_part = 1e-6;
 
-/// Pseudoinverse of a symmetric matrix whose rows may have different units. Rows may depend on each other: eigenvalues
-/// below `negligible_part` of a row count as zero.
+/// Pseudoinverse of a symmetric positive semidefinite matrix. Rows may have different units, so the matrix is first
+/// scaled to a unit diagonal. Rows may depend on each other: eigenvalues of the scaled matrix up to `negligible_part`
+/// count as zero.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
     if (matrix.rows() == 0) return matrix;
     const Eigen::VectorXd scale =
@@ -258,10 +267,10 @@ std::vector<Real> normal_mobilities(const ContactProblem& problem) {
     return mobilities;
 }
 
-/// Rows of equations and contacts whose masses are coupled.
+/// Equations and contacts that act on the same coupled masses.
 struct Group {
     std::vector<EquationRow*> kept_velocity, kept_impulse;
-    std::vector<Index> contacts;  // numbers in the problem
+    std::vector<Index> contacts;  // indices in ContactProblem
 };
 
 Eigen::MatrixXd couplings(const Mobilities& mobilities, const std::vector<VelocityRow>& rows,
@@ -285,8 +294,9 @@ Eigen::VectorXd impulses_of(const std::vector<EquationRow*>& equations) {
     return impulses;
 }
 
-/// Finds the impulses of the held rows, which keep the rates that they have before the solve. `rate_by_others`: changes
-/// of the rates of all equations by contacts and known impulses.
+/// Finds the impulses of the held rows from the condition that the velocities of these rows stay as before the solve.
+/// `E`: velocity change of each equation per unit impulse of each equation. `rate_by_others`: velocity changes of all
+/// equations due to contacts and known impulses.
 void find_held_impulses(const Eigen::MatrixXd& E, const Eigen::VectorXd& rate_by_others,
                         const std::vector<EquationRow*>& equations) {
     std::vector<Index> held;
@@ -320,7 +330,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     sets.start(inputs.inverse_mass.size());
     for (const EquationRow& of : rows)
         mobilities.for_each_leader(of.row, [&](Index leader) { sets.join(mobilities.leader(of.row), leader); });
-    std::map<Index, Group> groups;  // by root
+    std::map<Index, Group> groups;  // by root in `sets`
     for (EquationRow& of : rows) {
         Group& group = groups[sets.root(mobilities.leader(of.row))];
         (of.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&of);
@@ -365,7 +375,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
                            C.transpose() * r + couplings(mobilities, of_equations, group.kept_impulse) * known_impulses,
                            group.kept_velocity);
         const Eigen::MatrixXd product = C * (inverse_of(E) * C.transpose());
-        const Eigen::MatrixXd less = (product + product.transpose()) / 2;  // symmetric without rounding errors
+        const Eigen::MatrixXd less = (product + product.transpose()) / 2;  // bitwise symmetric
         const Eigen::VectorXd more = known * known_impulses + C * impulses_of(group.kept_velocity) + less * r;
         for (std::size_t i = 0; i < group.contacts.size(); ++i) {
             const auto row = static_cast<Index>(3 * i);
@@ -383,7 +393,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     std::vector<Index> immovable;
     for (std::size_t i = 0; i < after.size(); ++i)
         if (!(after[i] > immovable_part * before[i])) immovable.push_back(static_cast<Index>(i));
-    // Immovable contacts act on the others with their impulses of the step.
+    // Immovable contacts act on the other contacts with the impulses that they had in the step.
     const auto is_immovable = [&](Index i) { return std::ranges::binary_search(immovable, i); };
     for (Index i = 0; i < problem.contacts(); ++i)
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k) {

@@ -19,26 +19,28 @@ struct HeldDirection {
     Vec3 direction;
 };
 
-/// Rows of a step that are not contacts, with the impulses that the solve has found.
+/// Equations of a step other than contacts, with the impulses that the solve has found.
 struct StepEquations {
     const JointBlockTable& joints;
     const TieRowTable& tie_rows;
-    std::span<const TieKind> tie_kind;  // column of TieTable; empty: `tie_rows` is out of date
+    std::span<const TieKind> tie_kind;  // column of TieTable; empty: no ties, and `tie_rows` is ignored
     const CableBlockTable& cables;
     std::vector<HeldDirection> held{};
 };
 
-/// Replaces W and q of the problem by those of contacts between bodies that joints, welds and rollers connect.
-/// Let C be the block of the Delassus operator between contacts and these rows, E the block between the rows, r* and s*
-/// the impulses of contacts and of all rows in the step, and G the block between contacts and all rows. Then
+/// Replaces W and q of the problem by those of contacts between bodies that joints, ties and rollers connect. The rows
+/// of joints, welds, ball ties and rollers are eliminated. Let C be the block of the Delassus operator between contacts
+/// and eliminated rows, E the block among eliminated rows, and G the block between contacts and all rows. Let r* be the
+/// impulses of contacts and s* those of all rows in the step. Then
 ///
 ///     W' = W - C E^-1 C^T,     q' = q + G s* + C E^-1 C^T r*,
 ///
-/// so that the velocities of the rows stay those of the step, and r* solves the new problem if it solved the problem of
-/// the step. Slides, cables, and motors, limits and passive forces of joint axes keep their impulses of the step.
-/// `contact`: row of each contact of the problem in `inputs`. `impulse`: r*, in the contact frames. Returns the
-/// numbers of the contacts that impulses can no longer move along their normals; nothing if no row acts on a contact.
-/// These contacts have no blocks, and q includes their impulses of the step.
+/// so that the velocities of the eliminated rows stay those of the step, and r* solves the new problem if it solved the
+/// problem of the step. Rows of slides, of cables, and of motors, limits and passive forces of joint axes are not
+/// eliminated: they keep their impulses of the step. `contact`: row of each contact of the problem in `inputs`.
+/// `impulse`: r*, in the contact frames. Returns the numbers of the contacts that impulses can no longer move along
+/// their normals. The blocks of these contacts are set to zero, and q of the other contacts includes the impulses of
+/// these contacts in the step. Returns nothing if no row acts on a contact.
 std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equations, const RegionInputs& inputs,
                                                       std::span<const Index> contact, std::span<const Vec3> impulse,
                                                       ContactProblem& problem);

@@ -8,7 +8,7 @@
 namespace skerry {
 
 /// A contribution to the 3 x 3 block of W that couples two contacts. Contributions to the same block are summed in the
-/// given order.
+/// order of the list, so that the sum is bitwise reproducible.
 struct BlockPart {
     Index row, column;  // numbers of the two contacts
     Mat3 value;

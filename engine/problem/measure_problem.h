@@ -8,7 +8,7 @@
 namespace skerry {
 
 /// Returns the errors of `reaction`. With Friction::pyramid the errors refer to the friction pyramid, where each
-/// tangential component has its own bound.
+/// tangential component has the bound mu r_n of its own.
 ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Solves a contact problem region by region with any method for problems with 3 x 3 blocks. This can be a method of the
-// library, or another method for comparison in profiling.
+// Solves a contact problem region by region. The method can be one of the library for problems with 3 x 3 blocks, or
+// another one for comparison in profiling.
 #pragma once
 
 #include <functional>

@@ -38,8 +38,8 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     for (std::size_t i = 0; i < count; ++i)
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
             joined.join(static_cast<Index>(i), problem.column[k]);
-    // A first pass over the contacts numbers the regions and counts their contacts. A second pass sorts the contacts by
-    // region.
+    // A first pass over the contacts numbers the regions and counts their contacts. A second pass stores the contacts
+    // by region. It moves each offset to the start of the next region, so the offsets are shifted back afterwards.
     regions.offset.assign(1, 0);
     for (Index i = 0; i < static_cast<Index>(count); ++i) {
         const Index region = joined.number(i);
@@ -60,9 +60,10 @@ struct Work {
     std::vector<Index> used;  // number of iterations that each region needed
 };
 
-/// Solves all regions. The tolerance applies to the error of all regions together, so each region gets a share of it.
-/// The error is divided by norms that are known only at the end. If the total relative error is then too large, the
-/// regions continue with half the tolerance.
+/// Solves all regions. The tolerance applies to the norm of the errors of all regions. Squares of norms add up, so a
+/// region gets a share of it proportional to the square root of its number of contacts. The relative error is the error
+/// divided by norms that are known only at the end. If it is then too large for the whole problem, the regions continue
+/// with half the tolerance.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
@@ -121,8 +122,8 @@ ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSett
     check(problem, settings);
     Work work;
     const double first = seconds_of(problem, settings, method, work);
-    // A short solve is repeated, because the first run is slowed down by memory allocation and cold caches, and the
-    // clock is coarse. The reported time is the median.
+    // A solve shorter than `long_enough` is repeated for about the time `budget` [s], because the first run is slowed
+    // down by memory allocation and cold caches, and the clock is coarse. The reported time is the median.
     constexpr double long_enough = 5e-3, budget = 20e-3;
     std::vector<double> seconds{first};
     while (first < long_enough && seconds.size() < 1001 &&

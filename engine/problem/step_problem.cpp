@@ -51,7 +51,7 @@ std::vector<CoupledNodes> coupled_nodes(const RegionInputs& contacts) {
     return coupled;
 }
 
-/// Returns the rigid bodies that contacts touch, each with the nodes that contacts touch.
+/// Returns the rigid and implicit bodies that contacts touch, each with the nodes that contacts touch.
 std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     const RigidInputs& rigid = contacts.rigid;
     std::map<Index, std::set<Index>> touched;
@@ -76,8 +76,8 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// Sets the touching point of each contact of the problem relative to the centre of mass, if the body is a cylinder.
-/// `rows` are the rows of these contacts in the tables of the step.
+/// For a cylinder, sets the contact point of each contact of the problem, relative to the centre of mass. Does nothing
+/// for other bodies. `rows` are the rows of the contacts of the problem in the tables of the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();
@@ -93,7 +93,7 @@ void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, R
     }
 }
 
-/// Returns the implicit bodies that contacts touch.
+/// Returns the deformation of the implicit bodies that contacts touch.
 std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
     std::vector<StrainedPoints> bodies;
     if (!contacts.implicit.any()) return bodies;

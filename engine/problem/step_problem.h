@@ -20,10 +20,11 @@ struct StepContacts {
     const StepEquations& equations;
 };
 
-/// Exports the contact problem that solve_regions solves, without other equations (eliminate_equations). W is computed
-/// from stencils and inverse masses, q from the predicted velocity and the bias of the gap, both in contact frames. If
-/// static and dynamic friction differ, the exported problem has only the dynamic coefficient, as mu. Fills problem
-/// (without its name and the start of its description), impulse, contact and region of the result.
+/// Exports the contact problem that solve_regions solves. Joints, ties, rollers and cables are not part of the result:
+/// eliminate_equations includes their effect in W and q. W is computed from stencils and inverse masses, q from the
+/// predicted velocity and the bias of the gap, both in contact frames. If static and dynamic friction differ, the
+/// exported problem has only the dynamic coefficient, as mu. Fills problem (without its name and the start of its
+/// description), impulse, contact and region of the result.
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h);
 
 }  // namespace skerry

@@ -1,4 +1,5 @@
-// Writes a contact problem in the local form of FCLIB, with the order and the data types of FCLIB's own writer.
+// Writes a contact problem in the local form of FCLIB. The data sets have the order and the types that FCLIB's own
+// writer gives them.
 #include <ostream>
 #include <string>
 #include <vector>

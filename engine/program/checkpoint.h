@@ -14,11 +14,11 @@ namespace skerry {
 /// Progress of a run that a checkpoint stores in addition to the world.
 struct RunMemory {
     std::filesystem::path scene;           // absolute path of the scene file
-    std::vector<std::string> assignments;  // SceneOverrides::assignments
+    std::vector<std::string> assignments;  // assignments PLACE=VALUE that change the scene
     double seconds = 0;                    // planned duration of the run [s]
     double frame_step = 0;                 // time between two frames [s]
-    int samples = 1;                       // RunPlan::samples
-    double probe_step = 0;                 // RunPlan::probe_step [s]
+    int samples = 1;                       // largest number of calls of advance per frame
+    double probe_step = 0;                 // time between two samples of the probes; 0: no probes [s]
     long frame = 0;                        // number of the frame being simulated
     int sample = 0;                        // index of the next call of advance within the frame
     double seconds_wall = 0;
@@ -28,7 +28,7 @@ struct RunMemory {
 
 Json to_json(const RunMemory& memory);
 /// Reads the text of to_json. `source`: file or rank that the text comes from, for messages. Throws SceneError if the
-/// text is damaged.
+/// text is empty or damaged.
 RunMemory memory_of(const std::filesystem::path& source, const std::string& text);
 
 struct Restart {
@@ -39,8 +39,9 @@ struct Restart {
 /// Reads a checkpoint. Throws SceneError if the file is not a checkpoint of a run.
 Restart read_restart(const std::filesystem::path& file, const LoadSettings& settings);
 
-/// Replaces the world of the scene by the world of a checkpoint. Throws SceneError unless both worlds have the same
-/// bodies and colliders, with equal names and with equal numbers of nodes per body.
+/// Replaces the world of the scene by the world of a checkpoint, and makes the probes of the scene refer to it. Throws
+/// SceneError unless both worlds have the same bodies and colliders, with equal names and with equal numbers of nodes
+/// per body. `file` is named in messages.
 void put_in_place(const std::filesystem::path& file, World world, Scene& scene);
 
 /// Writes checkpoints during a run.
@@ -59,7 +60,7 @@ public:
     int failed() const { return failed_; }
     /// Returns a description of the checkpoint file for the user.
     std::string summary() const;
-    /// Returns a line for the user of a run that was killed. It names the last checkpoint.
+    /// Returns the line to print when the MPI launcher ends the job. It names the last checkpoint, if there is one.
     std::string last_words() const;
 
 private:

@@ -45,13 +45,13 @@ struct RunOptions {
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
-    // File or folder of each output, by the output's option in output_formats(). If the path is empty, the output is
-    // not written.
+    // File or folder of each output, indexed by the command-line option of the output (OutputFormat::option). Outputs
+    // with an empty path are not written.
     std::map<std::string, std::filesystem::path> outputs;
     ProblemsOf problems_of = ProblemsOf::step;
     FilmColor film_color = FilmColor::none;
-    std::optional<Real> film_max;       // value at the upper end of the colours of films and glTF files
-    std::optional<int> problems_every;  // number of steps between two exported steps
+    std::optional<Real> film_max;       // value at the upper end of the colours of films and glTF files [Pa or m/s]
+    std::optional<int> problems_every;  // every N-th step is exported
     bool quiet = false;
     bool profile = false;               // also print step limits, solver statistics, energies and stage times
     bool strict = false;                // warnings count as failure: the run ends with exit_failed
@@ -92,7 +92,7 @@ struct FillOptions {
     std::vector<std::filesystem::path> surfaces;
     std::filesystem::path mesh;   // file for the mesh (.msh)
     std::filesystem::path scene;  // file for a scene in which the body falls on a floor; empty: none
-    std::string material;         // named material of the stable step and of the scene; empty: the default material
+    std::string material;         // named material for the scene and for the reported stable step; empty: the default
     mesh::FillSettings settings;
     bool json = false;
 };

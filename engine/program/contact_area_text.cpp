@@ -9,11 +9,12 @@ namespace skerry {
 
 namespace {
 
-// Radius of a contact area over the edge length, below which the stress in the area is that of single nodes.
+// Smallest number of edges per radius of a contact area for which the mesh resolves the stress in the area. Below it
+// the stress is that of single nodes.
 constexpr Real resolves_stress = 1;
-// Radius of a contact area over the edge length, below which an impact on a coarse ball takes at most 0.84 of the time
-// of Hertz: it takes about 1.67 times the root of this ratio, because the stiffness of a single node does not grow with
-// the contact area.
+// Smallest number n of edges per radius of a contact area for which impacts are accepted. On a coarse mesh an impact
+// takes about 1.67 sqrt(n) times as long as by the theory of Hertz, because the stiffness of a single node does not
+// grow with the contact area. For n = 0.25 this factor is 0.84.
 constexpr Real resolves_impacts = 0.25;
 constexpr Real impact_duration = 1.67;
 

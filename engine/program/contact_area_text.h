@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Returns one text for each body whose contact areas are too small for its mesh, if a probe depends on them: a probe
-/// of the stress of the whole body, or of forces on or by it.
+/// Returns one text for each body whose contact areas are too small for its mesh. Bodies are considered only if a probe
+/// of the scene measures the stress of the whole body, or forces on or by it.
 std::vector<std::string> contact_area_texts(const ScenePlan& plan, const World& world,
                                             std::span<const ErrorEstimate> errors);
 

@@ -52,8 +52,8 @@ std::string stage_table(const RunResult& result) {
     return text;
 }
 
-/// Returns one line for each cause that limited the length of at least 1 % of the steps, except for the setting
-/// step_size.
+/// Returns one line for each cause that limited the length of at least 1 % of the steps. The setting step_size does not
+/// count as a cause.
 std::string limit_lines(const WorldReport& r) {
     const auto why = [](const StepLimitReport& of) -> std::string {
         switch (of.limit) {
@@ -85,7 +85,8 @@ std::string limit_lines(const WorldReport& r) {
     return text;
 }
 
-/// Returns lines with the stable step, the number of repeated attempts at a step, and the number of shortened steps.
+/// Returns lines with the stable step, the number of repeated attempts at a step, the number of shortened steps, and
+/// the causes that limited the steps.
 std::string step_length_lines(const WorldReport& r) {
     std::string text;
     if (!r.stable_step_body.empty())

@@ -31,11 +31,12 @@ void check_outputs(const FillOptions& options) {
     if (!options.scene.empty()) require_writable_file(options.scene);
 }
 
-/// A scene in which the body falls on a floor from half of its size.
+/// Returns a scene in which the body falls on a floor. The lowest point of the body starts half the height of the body
+/// above the floor.
 Json starter_scene(const FillOptions& options, const MaterialSettings& given, const MeshReport& report) {
     const Real gravity = 9.81, height = report.upper.z() - report.lower.z(), fall = height / 2;
     const Real rounding = std::pow(10, std::ceil(std::log10(height)) - 3);
-    // Time of six falls, enough for the body to come to rest.
+    // Six times the duration of the fall, rounded up to 0.1 s: enough for the body to come to rest.
     const Real seconds = std::ceil(60 * std::sqrt(2 * fall / gravity)) / 10;
     Json material = object_of(
         {{"young_modulus", given.young_modulus}, {"poisson_ratio", given.poisson_ratio}, {"density", given.density}});
@@ -141,7 +142,7 @@ int fill(const FillOptions& options) {
                 << "\n";
         });
     if (options.json)
-        // The file names may be in another encoding than UTF-8.
+        // File names may contain bytes that are not UTF-8. These are replaced, because dump() would otherwise throw.
         std::cout
             << fill_json(options, filled, report, problems, seconds).dump(1, ' ', false, Json::error_handler_t::replace)
             << std::endl;

@@ -24,15 +24,15 @@ namespace skerry {
 
 namespace {
 
-// Ratio of the two smallest stable steps of bodies above which a problem is reported.
+// A problem is reported if the second smallest stable step of the bodies exceeds the smallest by this factor.
 constexpr Real expensive_step_ratio = 4;
 constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
 
 /// Report on all bodies that have the same mesh, materials, elements and dynamics, and therefore the same stable step.
 struct BodyKindReport {
     std::string first_name;
-    // Name of each material of the bodies, and number of tetrahedra of this material. The number is above 0 unless the
-    // bodies have no tetrahedra.
+    // Name of each material of the bodies, and number of tetrahedra of this material. Materials without tetrahedra are
+    // omitted, unless the bodies have no tetrahedra at all.
     std::vector<std::pair<std::string, std::size_t>> materials;
     std::size_t count = 0;
     std::size_t body = 0;  // index in ScenePlan::bodies of the first of these bodies
@@ -44,7 +44,7 @@ struct BodyKindReport {
 };
 
 /// Returns the number of tetrahedra of each material of a body: first the body's own material, then the materials of
-/// its labels.
+/// labelled parts of its mesh.
 std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan& plan, const BodyPlan& body,
                                                                  const MeshReport& mesh) {
     std::vector<std::pair<std::size_t, std::size_t>> count{{body.material, mesh.tetrahedra}};
@@ -64,10 +64,10 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Groups the bodies by mesh, materials, elements and dynamics. If `built` is given, it must be the world of the plan
-/// in which no step was planned yet. The result then contains the dynamics of the bodies in this world, and details of
-/// their stable steps. Otherwise the dynamics of the plan are used, and the stable step of each explicit group is
-/// computed in a separate world.
+/// Groups the bodies by mesh, materials, elements and dynamics. `built`: world built from the plan, before its first
+/// step is planned; may be null. With a world, the result contains the dynamics of the bodies in this world, and
+/// details of their stable steps. Without a world, the dynamics of the plan are used, and the stable step of each
+/// explicit group is computed in a separate world.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, World* built = nullptr) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;
@@ -125,7 +125,7 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
-/// A scene in the state in which a run starts, and its overlaps before the run resolves them.
+/// A scene in the state in which a run starts, and a report of the overlaps that the scene has as written.
 struct SceneStart {
     Scene scene;
     WorldReport as_written;  // report of a world in which the overlaps at the start are not resolved

@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and this value counts as a small gain
+constexpr Real hardly_longer = 1.03;  // ratios of stable steps from 1 / 1.03 to 1.03 are called slight changes
 
 /// Describes a ratio of stable steps: the step of the mesh without its worst tetrahedra, divided by the present step.
 /// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of

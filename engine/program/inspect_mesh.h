@@ -1,4 +1,4 @@
-// Reports on mesh files, and the parts of these reports that reports on scenes contain as well.
+// Reports on mesh files. Some of the functions are also used for reports on scenes.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Adds a problem if a part of the mesh is too thin to bend as its material. `boundary`: boundary triangles of the
-/// mesh.
+/// Adds a problem if a thin part of the mesh is too stiff in bending, or if elements lock. `boundary`: boundary
+/// triangles of the mesh. `of`: materials and elements of the body.
 void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
                    Problems& problems);
 void print_notes(const std::vector<std::string>& notes);

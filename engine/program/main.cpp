@@ -46,7 +46,7 @@ const CLI::Validator share(
     },
     "0 <= NUMBER < 1");
 
-/// Validator that accepts numbers of the type of the bounds, within the bounds.
+/// Validator that accepts numbers of the type Number from `least` to `most`.
 template <class Number>
 CLI::Validator within(Number least, Number most) {
     constexpr int digits = 10;
@@ -68,7 +68,7 @@ std::vector<std::string> names_of_all() {
     return names;
 }
 
-/// Adds an option whose values are the names of an enum. If a name was removed from the enum, the error message
+/// Adds an option whose values are the names of an enum. For a name that earlier versions accepted, the error message
 /// includes the hint of RemovedNames.
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& flag, Target& target, const std::string& meaning) {
@@ -352,7 +352,7 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
     command.add_flag("--quiet", options.quiet, "print no progress and no table");
 }
 
-/// Reads a share: 0.01 or 1%.
+/// Reads a positive number, or a percentage such as 1%. Returns nothing for any other text.
 std::optional<double> read_share(std::string text) {
     const bool percent = !text.empty() && text.back() == '%';
     if (percent) text.pop_back();
@@ -398,7 +398,8 @@ void add_study(CLI::App& app, StudyOptions& options) {
     command.add_flag("--quiet", options.quiet, "print no progress and no report");
 }
 
-/// Throws SceneError that names an unknown command. CLI11 only reports that a command is required.
+/// Throws SceneError if the command is unknown, and suggests the nearest name. CLI11 would only report that a command
+/// is required.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
     const std::string found = argv[1];

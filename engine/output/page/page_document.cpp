@@ -42,7 +42,7 @@ Json json_of_colliders(std::span<const PageCollider> colliders) {
 
 /// Returns an image as a data URI, or an empty text if the file is no PNG or JPEG image, too large, or not readable.
 std::string image_uri(const std::filesystem::path& file) {
-    constexpr std::uintmax_t most_bytes = 2 << 20;  // [bytes]; most pages without textures are smaller
+    constexpr std::uintmax_t most_bytes = 2 << 20;  // limit so that images do not dominate the size of a page [bytes]
     const std::string extension = file.extension().string();
     const bool is_png = extension == ".png" || extension == ".PNG";
     if (!is_png && extension != ".jpg" && extension != ".jpeg" && extension != ".JPG") return {};
@@ -54,7 +54,8 @@ std::string image_uri(const std::filesystem::path& file) {
     return std::string("data:image/") + (is_png ? "png" : "jpeg") + ";base64," + base64(bytes);
 }
 
-/// Materials of each visual surface. A texture that is not part of the page is only named.
+/// Materials of each visual surface. The page does not contain textures that image_uri() cannot encode. Their file
+/// names are given as "left_out".
 Json json_of_visuals(std::span<const std::vector<VisualMaterial>> visuals) {
     Json list = Json::array();
     for (const std::vector<VisualMaterial>& materials : visuals) {
@@ -160,7 +161,7 @@ std::string escape_html(const std::string& text) {
     return escape_markup(Json::parse(text_of(text)).get<std::string>());
 }
 
-/// Parts of a page that are not the same in every page.
+/// Parts of a page that differ from page to page.
 struct PageParts {
     std::string title, run, frames, visuals;
 };

@@ -21,18 +21,19 @@ struct PageSummary {
 /// Throws SceneError if this build has no three.js. The message names `file`.
 void require_page_library(const std::filesystem::path& file);
 
-/// Returns a page without a run, which asks the server that sent it for a live stream. Throws SceneError if this build
-/// has no three.js.
+/// Returns a page without a run. When it is open in a browser, it requests a live stream from its server. Throws
+/// SceneError if this build has no three.js.
 std::string live_page();
 
-/// Counts of the objects of a stream, for example of those that a page already contains.
+/// Numbers of objects in a stream, or in the part of a stream that a page already has.
 struct PageCounts {
     std::size_t bodies = 0, visuals = 0, colliders = 0, lines = 0;
 
     bool operator==(const PageCounts&) const = default;
 };
 PageCounts counts_of(const PageStream& stream);
-/// Returns the objects of a stream from the numbers `first` on, as the members of the run element of a page.
+/// Returns the JSON members that describe the objects of a stream. Omits the objects that `first` counts, because the
+/// page already has them.
 Json json_of_objects(const PageStream& stream, const PageCounts& first);
 /// Returns the values of a frame for the plots, by name.
 Json json_of_row(const PageRow& row);

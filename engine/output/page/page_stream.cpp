@@ -20,7 +20,8 @@ Real value_at(const BodyFrame& body, std::size_t field, std::size_t node) {
     if (field == error_field) return body.node_mesh_error.empty() ? 0 : body.node_mesh_error[node];
     if (body.node_stress.empty()) return 0;
     if (field == stress_field) return von_mises(body.node_stress[node]);
-    // The factor 2/3 is chosen so that an incompressible bar in tension shows its axial strain.
+    // An incompressible bar in tension has the strain diag(e, -e/2, -e/2), whose von Mises value is 3 e / 2. The factor
+    // 2/3 converts this value to e.
     return von_mises(body.node_strain[node]) * 2 / 3;
 }
 
@@ -71,9 +72,9 @@ std::string_view PageStream::pack(const Frame& frame) {
     return bytes_;
 }
 
-/// Collects the values of a body at the vertices of the page, and widens the value scales so that they include these
-/// values. All bodies of a frame must be measured before the first body is packed, because packing uses the final
-/// scales of the frame.
+/// Collects the values of a body at the vertices that the page draws, and widens the value scales so that they include
+/// these values. All bodies of a frame must be measured before the first body is packed, because a frame has one scale
+/// per field, which must include the values of all bodies.
 void PageStream::measure_body(const BodyFrame& body, BodyValues& values) {
     SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.node_strain.size() &&
                  (body.node_mesh_error.empty() || body.node_mesh_error.size() == body.node_stress.size()) &&

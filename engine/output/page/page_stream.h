@@ -15,8 +15,8 @@
 
 namespace skerry {
 
-/// A collider with the shape that it had in its first frame. Planes have no triangles, because the page draws them
-/// itself.
+/// A collider with the shape that it had in its first frame. The picture of a plane is empty, because the page draws
+/// planes itself.
 struct PageCollider {
     std::string name;
     std::string kind;  // kind of shape: plane, sphere, box, capsule, cylinder, bucket or mesh
@@ -35,8 +35,8 @@ PageRow row_of(const Frame& frame);
 /// memory does not grow with the number of frames. Counts and changes are encoded as in pack.h, all other numbers are
 /// little-endian. A frame consists of
 ///   numbers of bodies, colliders and contacts, as counts
-///   exponents e of the largest values 4^e of speed, stress, strain, mesh error and force (ValueScale), as changes from
-///     zero
+///   exponents e of the upper ends 4^e of the scales of speed, stress, strain, mesh error and force (ValueScale), as
+///     changes from zero
 ///   for each body: its number as a count; its shape in its first frame only; positions; values of each field
 ///     (BodyStream)
 ///   for each collider: its number as a count; f32 position[3] [m], rotation[3] (axis times angle) [rad]
@@ -48,7 +48,7 @@ public:
     /// of a body are written as 0.
     std::string_view pack(const Frame& frame);
 
-    // Objects of all frames so far. The position in a list is the number of the object in the stream.
+    // Objects of all frames so far. The index in a list is the number of the object in the stream.
     std::span<const std::string> body_names() const { return body_names_; }
     std::span<const BodyHandle> body_handles() const { return body_handles_; }
     /// Number of the visual surface of each body, or no_index. A body keeps the visual surface of its first frame.
@@ -84,7 +84,7 @@ private:
     LineStream lines_;
     std::array<ValueScale, page_field_count> field_scale_;
     ValueScale force_scale_;
-    // Working memory that is reused for each frame.
+    // Memory that is reused for each frame. `values_` and `bytes_` hold the results of the last frame.
     std::vector<BodyValues> values_;
     std::vector<ContactSides> sides_;
     std::string bytes_;

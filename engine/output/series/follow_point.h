@@ -13,7 +13,8 @@ namespace skerry {
 
 /// Returns the corners of the tetrahedron that contains the position `place`, and the barycentric coordinates of this
 /// position. If no tetrahedron contains the position, returns the nearest node, or nothing if this node is farther away
-/// than `reach` [m]. Without tetrahedra the body is rigid, and any position is a point of it.
+/// than `reach` [m]. A body without tetrahedra is rigid: any position moves with it, and is given by coordinates with
+/// respect to four of its nodes.
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach);
 

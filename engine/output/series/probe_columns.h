@@ -12,8 +12,9 @@ namespace skerry {
 struct ForceSum {
     // Sums of impulse [N s], angular impulse [N m s] and friction impulse [N s].
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();
+    // Sum of the magnitudes of the normal impulses [N s], largest force [N], and duration of the sums [s].
     Real pressing = 0, largest = 0, seconds = 0;
-    bool measured = false;  // true if a call was long enough to measure the force
+    bool measured = false;  // true if a call of advance was long enough to measure the force
     Index contacts = 0;
 
     void add(const ForceReport& report);
@@ -26,11 +27,14 @@ struct TrackedProbe {
     ForceSum force{};
 };
 
-// The following functions throw SceneError that names the probe if the world lacks an object or a node of the probe.
+// Each of the following functions throws a SceneError that names the probe if the world lacks an object or a node of
+// the probe.
 
-/// Checks the names of all probes, and that the world has the objects and nodes that they name.
+/// Checks that the names of the probes are valid and distinct, and that the world has the objects and nodes that the
+/// probes refer to.
 void check_probes(const World& world, std::span<const RecordedProbe> probes);
-/// Starts checked probes. If one of them needs forces, the world measures them from now on.
+/// Starts probes that check_probes() has accepted: sets their origins, and makes the world measure forces if one of the
+/// probes needs them.
 std::vector<TrackedProbe> track(World& world, std::vector<RecordedProbe> probes);
 void add_columns(const World& world, const RecordedProbe& probe, std::vector<SeriesColumn>& columns);
 /// Adds the forces of the last call of advance to a force probe. Does nothing for other probes.

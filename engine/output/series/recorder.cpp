@@ -46,7 +46,7 @@ std::string csv_row(std::span<const Real> values) {
 }
 
 /// Reads an existing CSV file, which must have the headings `head`. Returns its complete rows with times up to `until`
-/// [s].
+/// [s]; nothing if the file cannot be read or is empty.
 std::string rows_to_keep(const std::filesystem::path& file, const std::string& head, Real until) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return {};
@@ -93,10 +93,10 @@ PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point) {
 struct Recorder::Impl {
     std::vector<TrackedProbe> probes;
     std::vector<SeriesColumn> columns;
-    Real every = 0, next = 0;  // [s]
+    Real every = 0, next = 0;  // time between rows, and time at which the next row is due [s]
     bool begun = false;
     Real last_time = 0;        // simulated time at the last call of sample() [s]
-    std::vector<Real> values;  // row by row
+    std::vector<Real> values;  // recorded values of all rows, one row after the other
     std::filesystem::path stream_file;
     std::ofstream stream;
     std::uintmax_t stream_size = 0;  // size of the file up to the last complete row [bytes]
@@ -112,7 +112,7 @@ struct Recorder::Impl {
         if (stream) return;
         const std::string reason = std::generic_category().message(errno);
         stream.close();
-        // The file is truncated to remove the incomplete row.
+        // The file is truncated to its last complete row.
         std::error_code ignored;
         std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
         refuse_in(stream_file.string(), "output", {}, "the error \"" + reason + "\" while writing a row",
@@ -137,7 +137,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    // If no step was made since the last call of sample(), the sums already include the forces.
+    // Without a step since the last call of sample(), there are no forces to add and no new row.
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) add_forces(world, probe);

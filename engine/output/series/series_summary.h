@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Last, smallest, largest and mean value of a time series. In the mean each value has the weight of the time since the
-/// previous row. Values that are not finite do not count; without any value all are NaN.
+/// Last, smallest, largest and mean value of a time series. For the mean, each value is weighted with the time since
+/// the previous row. Values that are not finite are ignored. If no value is finite, all four results are NaN.
 struct SeriesSummary {
     Real end, least, most, mean;
 };

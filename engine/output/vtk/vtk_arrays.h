@@ -21,7 +21,7 @@ inline void put_symmetric(auto& put, const Mat3& m) {
     for (const auto& [row, column] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}) put(m(row, column));
 }
 
-/// Adds an array with one number of type T per row.
+/// Adds an array with the number value(row), converted to T, for each element of `rows`.
 template <class T>
 void scalars(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
     file.array<T>(name, 1, std::size(rows), [&](auto put) {
@@ -35,8 +35,8 @@ inline void vectors(VtkFile& file, std::string_view name, auto&& rows, auto&& va
     });
 }
 
-/// Adds the array "offsets" for `count` cells with `nodes` nodes each. For each cell it contains the index after the
-/// cell's last node.
+/// Adds the array "offsets" for `count` cells with `nodes` nodes each. For each cell it contains the index in the array
+/// "connectivity" after the last node of the cell.
 inline void offsets(VtkFile& file, std::size_t count, Index nodes) {
     file.array<std::int32_t>("offsets", 1, count, [&](auto put) {
         for (std::size_t cell = 1; cell <= count; ++cell) put(static_cast<Index>(cell) * nodes);

@@ -59,7 +59,7 @@ void VtkFile::write(const std::filesystem::path& file) {
     tags_ += "<AppendedData encoding=\"raw\">_";
     write_file(file, [&](std::ostream& out) {
         out << tags_ << data_ << "\n</AppendedData>\n</VTKFile>\n";
-    });  // meshio expects this line end
+    });  // meshio expects the line end between data and </AppendedData>
 }
 
 }  // namespace skerry

@@ -42,8 +42,8 @@ struct VtkTexts {
 /// of VTK's own readers accept them.
 class VtkFile {
 public:
-    /// `kind` is UnstructuredGrid or PolyData. The time is stored in the field data, where ParaView finds it if the
-    /// file is opened without the index of the series.
+    /// `kind` is UnstructuredGrid or PolyData. The time is also stored in the field data, where ParaView finds it if
+    /// the file is opened without the index of the series (.pvd).
     VtkFile(std::string_view kind, Real time, std::initializer_list<VtkTexts> texts = {});
 
     void open(std::string_view tag, std::string_view attributes = "");

@@ -99,8 +99,8 @@ void VtkSeries::remove_earlier() {
     earlier_.clear();
 }
 
-/// Reads the node positions of the first frame, from which displacements are measured. Does nothing if that frame has a
-/// different number of nodes.
+/// Reads the node positions of the first frame, from which displacements are measured. Does nothing if the file of this
+/// frame is missing or has a different number of nodes than `now`.
 void VtkSeries::read_origins(const Frame& now) {
     std::size_t points = 0;
     for (const BodyFrame& body : now.bodies) points += body.position.size();
@@ -143,7 +143,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         list(3, frame_file("lines", ".vtp"));
         list(4, frame_file("visual", ".vtp"));
     }
-    // Later frames refer to the last file of colliders, until a collider moves away from its present pose.
+    // Stores the present poses, so that later frames refer to the last file of colliders until a collider moves.
     if (!colliders_file_.empty()) colliders_changed(now);
 }
 
@@ -213,10 +213,10 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
         };
     };
 
-    VtkFile file("UnstructuredGrid", frame.time);  // without texts, which meshio does not read
+    VtkFile file("UnstructuredGrid", frame.time);  // no VtkTexts, because meshio cannot read them
     file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
-    // Positions are doubles, because users compute small differences of them (gaps, travel, strain), for which floats
-    // have too few digits. All other real numbers are floats, whose rounding errors are below the errors of the
+    // Positions are doubles, because users compute small differences of them (gaps, displacements, strains), for which
+    // floats have too few digits. All other real numbers are floats, whose rounding errors are below the errors of the
     // simulation.
     file.open("Points");
     file.array<double>("Points", 3, points,
@@ -234,7 +234,7 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
             first += static_cast<Index>(body.position.size());
         }
     });
-    Index end = 0;  // index after the last corner of a cell
+    Index end = 0;  // index in `connectivity` after the last corner of the present cell
     file.array<std::int32_t>("offsets", 1, cells, of_cells([&end](auto& put, const BodyFrame& b, std::size_t) {
                                  put(end += static_cast<Index>(b.corners_of_cell()));
                              }));
@@ -380,7 +380,7 @@ void VtkSeries::write_colliders(const Frame& frame, const std::string& name) con
 void VtkSeries::write_lines(const Frame& frame, const std::string& name) const {
     struct Cell {
         const LineFrame* line;
-        Index first, second;  // rows of the end points; equal for a cell that is a point
+        Index first, second;  // indices of the end points in `points`; equal for a cell that is a point
         Real force;
     };
     std::vector<Cell> vertices, segments;

@@ -1,4 +1,4 @@
-// Writes a series of VTK files, some for each frame.
+// Writes a series of VTK files, several for each frame.
 #pragma once
 
 #include <filesystem>
@@ -38,7 +38,7 @@ public:
 private:
     struct Entry {
         Real time;         // [s]
-        int part;          // index of the kind of file in `kinds`
+        int part;          // kind of file: 0 bodies, 1 contacts, 2 colliders, 3 lines, 4 visual surfaces
         std::string file;  // file name without folder; the index is in the same folder
     };
 

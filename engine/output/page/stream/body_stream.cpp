@@ -23,8 +23,8 @@ Lattice Lattice::around(std::span<const Vec3> points) {
 }
 
 Code3 Lattice::code(const Vec3& point, const Code3& code_prev) const {
-    // Largest distance of a lattice point from the origin, in lattice steps. Sums of a few coordinates of this size are
-    // still exact as doubles.
+    // Largest distance of a lattice point from the origin, in lattice steps. The JavaScript of the page computes with
+    // doubles, in which sums of a few coordinates of this size are still exact.
     constexpr Real far = static_cast<Real>(std::int64_t{1} << 45);
     Code3 code = code_prev;
     for (int axis = 0; axis < 3; ++axis) {

@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Number of fields that the page displays at a vertex. In this order: speed [m/s], von Mises stress [Pa], equivalent
-/// strain, estimated error of the stress due to the mesh.
+/// Number of fields that the page displays at a vertex. The fields are, in this order: speed [m/s], von Mises stress
+/// [Pa], equivalent strain, and relative error of the stress due to the mesh (mesh_error()).
 inline constexpr std::size_t page_field_count = 4;
 inline constexpr std::size_t stress_field = 1, strain_field = 2, error_field = 3;
 
@@ -36,8 +36,8 @@ struct Lattice {
     Vec3 point(const Code3& code) const;
 };
 
-/// Encoder of one body. It stores the vertices on the page, and the codes of the last frame. The vertices are the nodes
-/// of the surface, and the nodes on which the visual surface of the body depends.
+/// Encoder of one body. It stores the vertices that the page draws, and the codes of the last frames. The vertices are
+/// the nodes of the surface, and the nodes on which the visual surface of the body depends.
 class BodyStream {
 public:
     explicit BodyStream(const BodyFrame& body);
@@ -51,10 +51,11 @@ public:
     /// the last coordinate in the second frame, and afterwards a linear extrapolation from the last two frames.
     void put_positions(const BodyFrame& body, std::string& out);
     /// Writes the values of all vertices field by field. Each number is a residual (code minus prediction), written as
-    /// change from the residual of the previous vertex. The prediction of speed and stress is the code of the last
-    /// frame. Strain is nearly proportional to stress. Its prediction is therefore the last strain code plus r times
-    /// the change of the stress code, rounded. The factor r is the sum of all strain codes divided by the sum of all
-    /// stress codes, both of the last frame, or 0 if the latter sum is 0.
+    /// change from the residual of the previous vertex. The prediction of speed, stress and mesh error is the code of
+    /// the last frame, converted to the present scale. Strain is nearly proportional to stress. The prediction of its
+    /// code is therefore the code of the last frame plus r times the change of the stress code, rounded. The factor r
+    /// is the sum of all strain codes divided by the sum of all stress codes, both of the last frame, or 0 if the sum
+    /// of the stress codes is 0.
     void put_values(std::span<const std::vector<Real>> values, std::span<const ValueScale> scales, std::string& out);
 
     const std::vector<Index>& node() const { return node_; }

@@ -14,7 +14,7 @@ auto key_of(const ContactSides& sides, const std::array<Index, 4>& node) {
 }
 
 /// Returns the lattice on which the point of a contact is encoded, and the lattice coordinates of a reference point:
-/// the first vertex of the body to which the lattice belongs.
+/// the first vertex of the body to which the lattice belongs, or the origin if the contact has no body.
 std::pair<Lattice, Code3> place_of(const ContactSides& sides, const std::vector<BodyStream>& bodies) {
     const Index body = sides.first >= 0 ? sides.first : sides.second;
     if (body < 0) return {Lattice{}, Code3{}};

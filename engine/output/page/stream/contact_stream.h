@@ -26,14 +26,14 @@ struct ContactSides {
 class ContactStream {
 public:
     /// Writes, in this order:
-    /// 1. for each contact: 0 if it is new, otherwise 1 + zigzag(its row in the previous frame - expected row), where
-    /// the expected row follows the row of the last match;
+    /// 1. for each contact: 0 if it is new, otherwise 1 + zigzag(its index in the previous frame - expected index),
+    /// where the expected index is one more than the index of the last match, and 0 before the first match;
     /// 2. for each new contact: first, second and collider, each plus one;
     /// 3. component by component, for all contacts: x, y, z of the point, x, y, z of the force, and the normal force,
     /// each as change from a reference. The reference of a contact that continues is its value in the previous frame.
-    /// The reference of a new contact is the row above, if that row has the same first body; otherwise it is zero for
-    /// forces, and the first vertex of the body for points;
-    /// 4. for all contacts: the change of the region number from the row above;
+    /// The reference of a new contact is the value of the preceding contact of this frame, if both have the same first
+    /// body; otherwise it is zero for forces, and the first vertex of the body for points;
+    /// 4. for all contacts: the change of the region number from the preceding contact;
     /// 5. for all contacts: the state as u8 (0 open, 1 stick, 2 slide).
     /// Points are encoded on the lattice of the first body. If the contact has no first body, the lattice of the second
     /// body is used, and without any body a lattice of 1 um.
@@ -41,7 +41,7 @@ public:
                    const ValueScale& force, std::string& out);
 
 private:
-    // numbers of a contact: 3 for the point, 3 for the force, 1 for the normal force
+    // numbers that are encoded for a contact: 3 for the point, 3 for the force, 1 for the normal force
     static constexpr std::size_t number_count = 7;
 
     struct Row {
@@ -49,8 +49,8 @@ private:
         std::array<Index, 4> node;
         std::array<std::int64_t, number_count> code;
     };
-    /// Sorts the rows of the previous frame by partners and nodes of their contacts. Writes the sorted row numbers to
-    /// order_prev_.
+    /// Sorts the indices of the contacts of the previous frame by partners and nodes into order_prev_, for find().
+    /// Equal contacts keep their order.
     void sort_rows();
     Index find(const ContactSides& sides, const std::array<Index, 4>& node) const;
 

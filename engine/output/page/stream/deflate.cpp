@@ -23,8 +23,9 @@ struct Stream {
     Stream& operator=(const Stream&) = delete;
 };
 
-/// Checks a status returned by zlib. Throws std::bad_alloc if no memory is left. No other error can occur without a
-/// bug, because a stream is never closed twice and the output always has space.
+/// Checks a status returned by zlib. Throws std::bad_alloc if no memory is left. Z_BUF_ERROR only means that there was
+/// nothing to do. All other errors would be bugs, because a stream is never closed twice and the output always has
+/// space.
 void require(int status) {
     if (status == Z_MEM_ERROR) throw std::bad_alloc();
     SKERRY_CHECK(status == Z_OK || status == Z_STREAM_END || status == Z_BUF_ERROR);
@@ -55,8 +56,8 @@ struct Deflater::Impl {
 };
 
 Deflater::Deflater() : impl_(new Impl) {
-    // Encoded changes of numbers rarely contain repeated byte sequences. Z_FILTERED is meant for such data: frames are
-    // 3 % smaller than with the default strategy, and text is nearly as small.
+    // Encoded changes of numbers rarely contain repeated byte sequences. Z_FILTERED is meant for such data: compressed
+    // frames are 3 % smaller than with the default strategy, and compressed text is hardly larger.
     require(deflateInit2(&impl_->stream.z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, Z_FILTERED));
 }
 

@@ -19,16 +19,16 @@ struct PageLine {
     LineKind kind;
 };
 
-/// Encoder of lines.
+/// Encoder of all lines. It stores the points and forces of the lines in the previous frame.
 class LineStream {
 public:
     /// Writes the number of lines as a count. If it is not zero, writes further:
-    /// 1. the exponent e of the largest force 4^e (ValueScale), as change from zero;
+    /// 1. the exponent e of the upper end 4^e of the scale of forces (ValueScale), as change from zero;
     /// 2. in the first frame with lines: f64 origin[3] and step of the lattice on which points are encoded [m];
-    /// 3. for each line: its number and its number of points as counts; x, y, z and force of all points, quantity by
-    /// quantity, each as change from a reference. The reference is the value of this point in the previous frame, if
-    /// the line had as many points there. Otherwise it is the value of the previous point, and zero for the first
-    /// point.
+    /// 3. for each line: its number and its number of points as counts; then x of all points, y of all points, z of all
+    /// points, and the forces at all points, each value as change from a reference. The reference is the value of this
+    /// point in the previous frame, if the line had as many points there. Otherwise it is the value of the preceding
+    /// point of the line, and zero for the first point.
     void put_frame(const Frame& frame, std::string& out);
 
     std::span<const PageLine> lines() const { return lines_; }

@@ -1,4 +1,4 @@
-// Encodes a value in eleven bits, with a finer resolution for small values.
+// Encodes a value in eleven bits and a sign, with a finer resolution for small values.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@ namespace skerry {
 class ValueScale {
 public:
     static constexpr int last = 2047;
-    /// Smallest exponent, with which a new scale starts, and largest exponent. The value 4^highest is still finite.
+    /// Range of the exponent. A new scale starts with the smallest exponent. The value 4^highest is still finite.
     static constexpr int lowest = -255, highest = 511;
 
     void widen(Real value) {
         if (!std::isfinite(value)) return;
         while (exponent_ < highest && value > top()) ++exponent_;
     }
-    /// exponent e of top = 4^e
+    /// Exponent e of top = 4^e. It never decreases.
     int exponent() const { return exponent_; }
     Real top() const { return std::ldexp(1.0, 2 * exponent_); }
     /// Returns the code, with the sign of the value. The code of NaN is 0, and values above `top` get the largest code.
@@ -43,7 +43,8 @@ private:
     int exponent_ = lowest;
 };
 
-/// Converts a code of a scale with `exponent_prev` to the code of the same value with the larger `exponent`.
+/// Converts a code of a scale with `exponent_prev` to the code of the same value with the larger `exponent`. Each
+/// increase of the exponent by one halves the code.
 inline int shifted(int code, int exponent_prev, int exponent) {
     return code >> std::min(exponent - exponent_prev, 31);
 }

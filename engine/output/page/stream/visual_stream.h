@@ -1,4 +1,4 @@
-// Encodes the visual surfaces of bodies and their bindings.
+// Encodes the visual surfaces of bodies, and the data with which their nodes follow the nodes of the bodies.
 #pragma once
 
 #include <string>
@@ -8,25 +8,28 @@
 
 namespace skerry {
 
-/// The page computes the positions of a visual surface from those of the nodes of its body. A surface is therefore
-/// encoded only once, whatever the number of frames. Bodies with equal surfaces share one.
+/// The page computes the positions of a visual surface from the node positions of its body. A surface is therefore
+/// encoded only once, whatever the number of frames. Bodies with equal visual surfaces and equal bindings share one
+/// encoded surface.
 class VisualStream {
 public:
-    /// Returns the number of a surface, which is appended if no earlier surface equals it.
+    /// Returns the number of a surface. Appends the surface unless an equal one is already stored.
     Index number_of(const BoundVisual& visual);
     /// The surfaces from number `first` on, compressed. Counts and changes are encoded as in pack.h. A surface consists
     /// of
     ///   numbers of nodes, triangles, texture points and materials, as counts; f64 step of the offsets [m]
-    ///   nodes of the body that each node follows: four times all nodes, each as change from the previous one
-    ///   weights of the first three of these nodes in units of 2^-16, in the same way
-    ///   offsets axis by axis in steps, in the same way
-    ///   number of gradients as a count, and for each: change of its node, number of terms; for each term: change of
-    ///   its node, f32 gradient[3] [1/m]
+    ///   the four body nodes that each surface node follows: the first body node of all surface nodes, then the second,
+    ///     and so on, each as change from the previous number
+    ///   weights of the first three of these body nodes in units of 2^-16, in the same order; the sum of all four is 1
+    ///   offsets axis by axis in steps, as changes
+    ///   number of gradients as a count, and for each: its body node as change from the previous gradient, number of
+    ///     terms; for each term: its body node as change from the previous term, or from the body node of the gradient,
+    ///     and f32 gradient[3] [1/m]
     ///   corners of the triangles as changes
     ///   if there are texture points: u, then v of all points in units of 2^-16, and corners, as changes
     ///   if there are materials: material of each triangle as change
     std::string packed(std::size_t first = 0) const;
-    /// Materials of each surface.
+    /// Materials of each surface, by number of the surface.
     const std::vector<std::vector<VisualMaterial>>& materials() const { return materials_; }
 
 private:
