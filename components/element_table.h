@@ -97,8 +97,8 @@ struct ElementBlockTable {
     Column<ElementLane> own_frequency;        // upper bound of the circular frequencies of the element at rest [1/s]
     // stiffness of the spring of each Maxwell element, as a fraction of the stiffness of the material law
     Column<Real> relaxing_share;
-    // Rotation from the mesh to the coordinates of the gradients (turn_elements changes both). It turns the axes of
-    // anisotropic materials.
+    // Rotation from the axes of the mesh to the axes in which the gradients are stored. It turns the axes of
+    // anisotropic materials. turn_elements() rotates the gradients and updates this matrix.
     Column<Mat3> orientation;
     Column<Index> body;      // row of BodyTable
     Column<Index> material;  // row of MaterialTable

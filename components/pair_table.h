@@ -79,7 +79,7 @@ struct SelfSearch {
     // For each node: position at the last update of LeafPair::spare [m]. The column is saved with the role `memory`.
     Column<Vec3> origin;
     // For each node: displacement from `origin` to the present position, without the common rotation of the body [m].
-    // The check at the end of a step uses the position there instead.
+    // The check at the end of a step replaces the present position by the position at the end of the step.
     Column<Vec3> moved;
     // Boxes of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
     Column<Aabb> moved_box, speed_box;

@@ -8,7 +8,7 @@
 namespace skerry {
 
 /// All data on which the stable step of a single body depends, apart from the mesh. By default the body has the default
-/// material and elements. The dynamics of the body are ignored; it is explicit.
+/// material and elements. The body is explicit; `body.dynamics` is ignored.
 struct StepCase {
     Settings settings{};
     MaterialSettings material{};

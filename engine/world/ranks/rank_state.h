@@ -50,8 +50,9 @@ struct SetMember {
 struct RankSleep {
     Column<std::uint8_t> asleep;  // by body
     Column<Real> still_time;      // by body [s]
-    Column<Index> woken;          // rows in the undivided world of the bodies with several holders that this rank wakes
-    Column<SetMember> members;    // entries for the sets that this rank has found
+    // bodies that this rank wakes and other ranks hold too: rows in the undivided world
+    Column<Index> woken;
+    Column<SetMember> members;  // entries for the sets that this rank has found
     // A node of `joined` for each row of the undivided world, and for each set of the message that is being read;
     // no_index: none yet.
     Column<Index> node_of_place, node_of_set;

@@ -95,9 +95,10 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Sharper bound of the stable step of the explicit elements, for a body with clusters that is strained in a few places
-/// only [s]. `stable`: a step length known to be stable. `longest`: longest step length that is of use. Returns
-/// `stable` if no better bound is needed (`stable` is at least `longest`) or found, or the body has no clusters.
+/// Returns a step length that is stable for the explicit elements of a body with clusters [s]. It may be longer than
+/// `stable`, a length known to be stable, if the body is strained in a few places only. `longest`: longest length that
+/// is of use. Returns `stable` if this is at least `longest`, if the body has no clusters, or if no longer step is
+/// found.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real longest, Real stable,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];

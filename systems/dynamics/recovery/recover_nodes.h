@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Present state of the body for which a plan was made. The elements must be those of that time.
+/// Present state of a body with a recovery plan. The body must still have the elements for which the plan was made.
 struct RecoveryState {
     ElementInputs elements;
     Range blocks;                    // element blocks of the body

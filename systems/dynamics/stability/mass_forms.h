@@ -1,5 +1,5 @@
-// Finds mass forms for the bound on the step. The mass form of an element is its share in the masses of the nodes, as a
-// matrix that couples the nodes of the element (docs/methods/stable_step.md 2.3).
+// The masses of the nodes are divided among the elements for a bound on the stable step. The part that an element gets
+// is a matrix over its nodes, called its mass form. This file finds the forms (docs/methods/stable_step.md 2.3).
 #pragma once
 
 #include <span>
