@@ -22,7 +22,7 @@ import sources
 # inlined.
 KINDS = ("copies", "other calls", "stack accesses", "scalar comparisons")
 LIMITS = {
-    "compute_run": {"x86-64": (3, 7, 3266, 119), "x86-64-v3": (3, 7, 745, 7), "x86-64-v4": (0, 4, 230, 3)},
+    "compute_run": {"x86-64": (3, 7, 3273, 119), "x86-64-v3": (3, 7, 745, 7), "x86-64-v4": (0, 4, 230, 3)},
     "skerry::distances(": {"x86-64": (0, 0, 468, 100), "x86-64-v3": (0, 0, 79, 0), "x86-64-v4": (0, 0, 2, 0)},
     "sort_by_counting(": {"x86-64": (1, 0, 11, 4), "x86-64-v3": (1, 0, 3, 0), "x86-64-v4": (1, 0, 3, 0)},
     "BodySearch<false>::compare_": {"x86-64": (0, 5, 58, 44), "x86-64-v3": (0, 5, 13, 1), "x86-64-v4": (0, 5, 14, 1)},
