@@ -49,6 +49,7 @@ void rename_world(RecordedProbe& probe, std::uint32_t number) {
             if constexpr (requires { what.collider; }) rename(what.collider);
             if constexpr (requires { what.attachment; }) rename(what.attachment);
             if constexpr (requires { what.joint; }) rename(what.joint);
+            if constexpr (requires { what.tie; }) rename(what.tie);
             if constexpr (requires { what.cable; }) rename(what.cable);
             if constexpr (requires { what.cavity; }) rename(what.cavity);
             if constexpr (requires { what.spring; }) rename(what.spring);

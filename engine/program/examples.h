@@ -37,8 +37,8 @@ the times of all stages and the hash of the final state. --stats writes all of t
 
 --restart reads the scene file, the settings, the simulated time of the run and the times of the frames from the
 checkpoint. Give SCENE only if the scene file has moved. --seconds may be larger and --threads may differ. --stats then
-covers the whole run, but the times of the stages begin at the checkpoint. --probes and --out continue the earlier
-files; use the same file and folder. --page, --film and --trace begin at the checkpoint.)";
+covers the whole run, but the times of the stages begin at the checkpoint. --probes (CSV) and --out continue the earlier
+files; use the same file and folder. --page, --film, --trace and --probes (HDF5) begin at the checkpoint.)";
 
 inline constexpr const char* view_examples = R"(Examples:
   skerry view scenes/skittles.json                         opens the browser; Ctrl-C ends

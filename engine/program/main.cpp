@@ -178,7 +178,7 @@ CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
         "--restart", options.restart,
         "checkpoint from which to continue; the result is bitwise identical to the result of an uninterrupted run");
     for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
-                              "--element", "--contact-regions", "--from-rest"})
+                              "--max-iterations", "--start-overlaps", "--element", "--contact-regions", "--from-rest"})
         restart->excludes(command.get_option(fixed));
     return restart;
 }

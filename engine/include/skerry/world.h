@@ -99,9 +99,10 @@ public:
     /// Directions are fixed in the world, of any nonzero length, and perpendicular to each other. Empty: the nodes are
     /// held completely. Only for explicit bodies, and for velocities or keys without rotation. Several attachments can
     /// hold a node along directions that are perpendicular or equal; of equal ones the last attachment moves the node.
-    /// The contact solver treats nodes held along directions as free. The part of a contact impulse along a held
-    /// direction then acts on the attachment instead of stopping the other object, so hold nodes completely where
-    /// objects press on them along a held direction (docs/methods/sets_and_rollers.md).
+    /// The contact solver satisfies these conditions together with the contacts, except for contacts whose normal lies
+    /// exactly along held directions. There it treats the nodes as free: the impulse acts on the attachment instead of
+    /// stopping the other object. Hold nodes completely where objects press on them in this way
+    /// (docs/methods/sets_and_rollers.md).
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
     /// Removes an object, and with it the joints, ties and other objects that name it.

@@ -1,5 +1,7 @@
 // Writer for the time series of probes, as CSV or HDF5 file.
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/base/complaint.h"
@@ -45,17 +47,24 @@ protected:
     }
 };
 
-/// Writes all rows at the end of the run.
-class Hdf5Series final : public ProbeSeries {
-public:
-    using ProbeSeries::ProbeSeries;
-    void close(const World&) override { recorder().write_hdf5(file()); }
-};
-
 [[noreturn]] void refuse_series(const std::filesystem::path& file, const std::string& found,
                                 const std::string& expected, const std::string& hint = {}) {
     refuse_in(file.string(), "--probes", {}, found, expected, hint);
 }
+
+/// Writes all rows at the end of the run. The file of a resumed run has only the rows after the checkpoint.
+class Hdf5Series final : public ProbeSeries {
+public:
+    using ProbeSeries::ProbeSeries;
+    void close(const World&) override { recorder().write_hdf5(file()); }
+
+protected:
+    void begin_file(const World&, const RunStart& start) override {
+        if (start.resumed() && std::filesystem::exists(file()))
+            refuse_series(file(), "an existing file, whose rows would be lost", "a new file",
+                          "a resumed run cannot add rows to an HDF5 file; use another name, or .csv");
+    }
+};
 
 }  // namespace
 

@@ -119,6 +119,17 @@ class CheckpointTest(ProgramCase):
         self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
         self.assertEqual(parts.read_text(), whole.read_text())
 
+    def test_a_run_with_a_probe_of_a_tie_goes_on_with_the_same_rows(self):
+        scene = self.write("tie.json", dict(
+            SCENE, ties=[{"name": "tie", "body": "block", "nodes": [0]}],
+            probes=[{"name": "tie", "quantity": "tie", "tie": "tie"}]))
+        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
+        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
+        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
+        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
+        self.assertEqual(parts.read_text(), whole.read_text())
+        self.assertGreater(len(whole.read_text().splitlines()), 5)
+
     def test_a_run_with_a_cable_goes_on_with_the_same_rows(self):
         points = [{"point": [0, 0, 1]}, {"body": "block", "point": [0, 0, 0.05]},
                   {"collider": "floor", "point": [1, 0, 0]}]
@@ -204,7 +215,8 @@ class CheckpointTest(ProgramCase):
         self.assert_refused("run", "--restart", checkpoint, said=["a checkpoint at 0.2 s", "a larger --seconds"])
         self.assert_refused("run", "--restart", self.scene, said=["drop.json", "a file of another kind"])
         self.assert_refused("run", "--restart", self.folder / "none", said=["no such file"])
-        self.assert_refused("run", "--restart", checkpoint, "--step", 1e-5, said=["--step"])
+        for option, value in (("--step", 1e-5), ("--max-iterations", 9), ("--start-overlaps", "ignore")):
+            self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.3, option, value, said=[option])
         self.assert_refused("run", "--every", 1, self.scene, said=["--checkpoint"])
         self.assert_refused("run", said=["SCENE"])
         self.assert_refused("run", self.scene, "--checkpoint", self.scene, said=["the same file as the scene"])

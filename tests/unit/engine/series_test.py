@@ -197,6 +197,22 @@ class SeriesTest(ProgramCase):
                             said=["series.csv", "the column headings of the recorded probes"])
         self.assertEqual(series.read_text(), before)
 
+    def test_a_resumed_run_keeps_an_existing_hdf5_file_and_begins_a_new_one_at_the_checkpoint(self):
+        series, later, rows = (self.folder / name for name in ("series.h5", "later.h5", "later.csv"))
+        checkpoint = self.folder / "run.skerry"
+        self.skerry("run", self.scene, "--seconds", 0.05, "--checkpoint", checkpoint, "--probes", series)
+        before = series.read_bytes()
+        self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", series,
+                            said=["series.h5", "an existing file", "a new file", ".csv"])
+        self.assertEqual(series.read_bytes(), before)
+        for file in (later, rows):
+            self.skerry("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", file)
+        columns = read_csv(rows)
+        self.assertGreater(min(columns["time [s]"]), 0.05)
+        heights = columns["corner.position_z [m]"]
+        self.assertGreater(len(heights), 1)
+        self.assertTrue(struct.pack(f"<{len(heights)}d", *heights) in later.read_bytes())
+
     def test_frames_have_displacements_strains_names_and_forces(self):
         out = self.folder / "frames"
         self.skerry("run", self.scene, "--out", out, "--seconds", 0.3)
