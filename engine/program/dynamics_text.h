@@ -29,8 +29,10 @@ inline std::vector<std::string> choice_texts(const WorldReport& report) {
             ++same->second;
     }
     for (const auto& [first, count] : kinds)
-        texts.push_back(first->name + (count > 1 ? " and " + grouped(count - 1) + " more bodies: " : ": ") +
-                        first->message());
+        texts.push_back(
+            first->name +
+            (count > 1 ? " and " + grouped(count - 1) + (count == 2 ? " more body: " : " more bodies: ") : ": ") +
+            first->message());
     return texts;
 }
 

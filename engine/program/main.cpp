@@ -377,8 +377,8 @@ void add_study(CLI::App& app, StudyOptions& options) {
     command
         .add_option("--probe", options.settings.probes,
                     "probe or body whose quantities get error bars, as NAME or NAME.QUANTITY; repeat the option for "
-                    "several; default: all probes of the scene, and place, contact force and largest stress of each "
-                    "body, and the energies")
+                    "several; default: all probes of the scene, and displacement, contact force and largest stress "
+                    "of each body, and the energies")
         ->type_name("NAME")
         ->allow_extra_args(false);
     add_number(command, "--seconds", options.settings.seconds,
