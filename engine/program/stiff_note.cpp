@@ -98,8 +98,8 @@ std::string stiff_note(const ScenePlan& plan, const World& world, double steps, 
                " --repair NEW.msh`)";
     if (body.settings.self_contact)
         return text +
-               "reduce young_modulus, coarsen the mesh, or give up self_contact and set \"dynamics\" of the body "
-               "to \"implicit\"";
+               "reduce young_modulus, coarsen the mesh, or give up self_contact (and plasticity or a loss_factor) and "
+               "set \"dynamics\" of the body to \"implicit\"";
     return text +
            "set \"dynamics\" of the body to \"implicit\", or to \"rigid\" if its deformation does not matter "
            "(docs/stiff.md)";

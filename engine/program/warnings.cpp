@@ -111,7 +111,7 @@ std::vector<std::string> warnings_of(const RunResult& result) {
             (r.held_body.empty() ? "held surfaces are" : "held nodes of body \"" + r.held_body + "\" are") + " up to " +
             with_unit(r.held_penetration, "m") + " deep inside " +
             (r.held_in.empty() ? "another object" : "\"" + r.held_in + "\"") +
-            ", and no contact can push them out: correct the motion of the pin or of the collider");
+            ", and no contact can push them out: correct the place or the motion of one of the two");
     if (r.collider_turn > visible_turn) warnings.push_back(turning_text(r));
     warn_of_elements(r, shorter, warnings);
     return warnings;

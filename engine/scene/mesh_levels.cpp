@@ -166,7 +166,7 @@ SceneLevels levels_of(const SceneFile& scene, const std::filesystem::path& file)
             const auto reason = [&](int level) { return why_not(mesh, mesh.refine + level, rigid, parts); };
             while (reason(own.finest + 1).empty()) ++own.finest;
             if (mesh.file || (mesh.surface && !mesh.edge)) {
-                own.why_not_coarser = "larger triangles would change the shape of its surface";
+                own.why_not_coarser = "its surface is from a file, and larger triangles can change the shape";
             } else {
                 while (reason(own.coarsest - 1).empty()) --own.coarsest;
                 own.why_not_coarser = reason(own.coarsest - 1);

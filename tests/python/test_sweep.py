@@ -52,7 +52,7 @@ def test_a_sweep_without_a_valid_case_raises_the_first_error() -> None:
 def test_a_single_value_is_not_a_list_of_values() -> None:
     with pytest.raises(TypeError, match="seconds: found 1.0, expected a list of values"):
         sk.sweep(SCENE, {"seconds": 1.0})  # type: ignore[dict-item]
-    with pytest.raises(TypeError, match=r"grid\[0\]: found 'seconds', expected the values of a case by place"):
+    with pytest.raises(TypeError, match=r"grid\[0\]: found 'seconds', expected a mapping from places to values"):
         sk.sweep(SCENE, ["seconds"])  # type: ignore[list-item]
 
 

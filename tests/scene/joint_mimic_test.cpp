@@ -238,7 +238,7 @@ TEST_CASE("a mimic names what is wrong with it", "[scene][joints]") {
     };
     refused(fixed, {.leader = gripper.leader}, "a fixed joint");
     refused(gripper.leader, {.leader = fixed}, "a fixed joint");
-    refused(gripper.leader, {.leader = gripper.leader}, "a joint that mimics this joint");
+    refused(gripper.leader, {.leader = gripper.leader}, "this joint itself");
     refused(gripper.leader, {.leader = gripper.follower}, "a joint that mimics this joint");
     refused(gripper.follower, {.leader = gripper.leader, .ratio = 0}, "mimic.ratio");
     refused(gripper.follower, {.leader = gripper.leader, .offset = infinity}, "mimic.offset");

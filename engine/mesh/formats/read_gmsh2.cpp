@@ -123,9 +123,9 @@ std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t 
     const std::size_t tag_count = reader.checked_count(tags, 4, "tag count");
     const std::size_t rows = reader.checked_count(announced, 4 * (1 + tag_count + nodes), "elements of a block");
     if (rows == 0 || rows > count - done)
-        reader.complain(
-            "elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done),
-            "the section has only that many elements left; correct the count of this block or of the section");
+        reader.complain("elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done),
+                        "the section has only " + std::to_string(count - done) +
+                            " elements left; correct the count of this block or of the section");
     std::vector<std::int64_t> node_numbers(nodes);
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("element", done + i + 1, count);

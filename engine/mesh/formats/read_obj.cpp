@@ -14,6 +14,8 @@ Index parse_number(const FileReader& reader, std::string_view text, const char* 
     const std::int64_t number = reader.parse_integer(text, field);
     const auto count = static_cast<std::int64_t>(rows);
     const std::int64_t row = number < 0 ? count + number : number - 1;
+    if (count == 0)
+        reader.complain(field, std::to_string(number), std::string("a ") + field + " defined above, but there is none");
     if (row < 0 || row >= count)
         reader.complain(field, std::to_string(number),
                         "1 to " + std::to_string(count) + " (the " + field + "s defined above), or -1 to -" +

@@ -91,7 +91,7 @@ def _cases(grid: Mapping[str, Sequence[Json]] | Sequence[Case]) -> list[Case]:
         cases = list(checked(grid, "grid", Mapping, Iterable))
         for number, case in enumerate(cases):
             if not isinstance(case, Mapping):
-                raise TypeError(f"grid[{number}]: found {case!r}, expected the values of a case by place")
+                raise TypeError(f"grid[{number}]: found {case!r}, expected a mapping from places to values")
         return cases
     for place, values in grid.items():
         if isinstance(values, str) or not hasattr(values, "__len__"):

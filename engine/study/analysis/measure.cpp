@@ -189,7 +189,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(
             StudyVerdict::chaotic,
-            "runs whose starts differ by 1e-12 m end with different values, so this value depends on rounding errors");
+            "runs whose starts differ by 1e-12 m give different values, so this value depends on rounding errors");
     }
     const StressGrowth growth(family, column, figure);
     if (growth.is_singular()) {

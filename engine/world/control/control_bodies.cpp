@@ -169,8 +169,8 @@ void World::set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angu
     state_->require_between_steps("set_velocity");
     state_->settle();
     const auto row = static_cast<std::size_t>(state_->model.row(body, "set_velocity"));
-    if (!velocity.allFinite() || !angular_velocity.allFinite())
-        refuse(title_of_body(state_->model, row), "velocity", "a value that is not finite", "finite numbers");
+    require_finite(title_of_body(state_->model, row), "velocity", velocity);
+    require_finite(title_of_body(state_->model, row), "angular_velocity", angular_velocity);
     const Vec3 center = center_of_mass(body);
     std::vector<Vec3> of_nodes;
     for (const Vec3& x : positions(body)) of_nodes.push_back(velocity + angular_velocity.cross(x - center));

@@ -388,8 +388,10 @@ void Joints::set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic
             refuse_joint("mimic.offset", short_text(mimic->offset), "a finite coordinate (rad or m)");
         for (Index at = leader; at != no_index; at = table.leader[static_cast<std::size_t>(at)])
             if (at == static_cast<Index>(row))
-                refuse_joint("mimic", "a joint that mimics this joint, directly or through others",
-                             "a joint that does not");
+                refuse_joint(
+                    "mimic",
+                    leader == at ? "this joint itself" : "a joint that mimics this joint, directly or through others",
+                    "another joint, which does not mimic this one");
     }
     JointTable changed = table;
     changed.leader[row] = leader;

@@ -103,7 +103,7 @@ void require_changeable(const Model& model, const MaterialRow& now, const Materi
     if (now.constants.yields() != next.constants.yields())
         refuse("material", "plasticity", next.constants.yields() ? "plasticity" : "no plasticity",
                now.constants.yields() ? "plasticity" : "no plasticity",
-               "add a new material; you can change the plasticity of an existing one, but neither add nor remove it");
+               "plasticity can change, but neither appear nor vanish; add a body with a new material");
     const auto flowed = std::ranges::find_if(bodies, [&](std::size_t body) { return has_flowed(model, body); });
     if (flowed != bodies.end() && !now.same_elements(next))
         refuse("material", "young_modulus, poisson_ratio, density, losses",

@@ -47,7 +47,7 @@ void require_stable(const Model& model, const std::string& object, const PlacedA
         refuse(object, field,
                "implicit body '" + model.body_records[body].name + "' in a world with theta " +
                    short_text(model.settings.theta),
-               "theta 1 in the settings, or another body");
+               "theta 1 in the settings, or a body that is not implicit");
 }
 
 void require_body(const std::string& object, const PlacedAnchor& first, const PlacedAnchor& second) {

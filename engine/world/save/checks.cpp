@@ -128,7 +128,8 @@ void expect_partition(const SavedFile& file, std::string_view path, std::span<co
         if (ranges[i].begin != end || ranges[i].end < end)
             file.complain(std::string(path),
                           at_row(std::to_string(ranges[i].begin) + " to " + std::to_string(ranges[i].end), i),
-                          "a range that begins at " + std::to_string(end) + ", the end of the previous range");
+                          "a range that begins at " + std::to_string(end) +
+                              (i > 0 ? ", the end of the previous range," : "") + " and ends there or later");
         end = ranges[i].end;
     }
     if (end != static_cast<Index>(count))
