@@ -15,7 +15,7 @@ inline constexpr bool access_is_checked = false;
 
 /// Observer of column accesses. While an AccessScope exists on a thread, every access of the thread to a column calls
 /// touched() of the scope's AccessWatch. touched() throws if the access is not allowed. `column`: address of the Column
-/// or of its member CopyCheck; `bytes`: size of this object.
+/// or of one of its members; `bytes`: size of the object at this address.
 class AccessWatch {
 public:
     virtual void touched(const void* column, std::size_t bytes, bool writes) const = 0;

@@ -12,7 +12,7 @@ namespace skerry {
 
 /// Rows of a body minus the corresponding rows of an earlier body with the same mesh.
 struct RowsBehind {
-    Index nodes, elements;  // difference of rows of NodeTable, and of numbers of tetrahedra
+    Index nodes, elements;  // `nodes`: rows of NodeTable; `elements`: numbers of tetrahedra in TetrahedronBlockTable
     Index triangles = 0, edges = 0, vertices = 0;
 };
 

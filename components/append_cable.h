@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// Appends a point to the columns with one row per point. Direction, length, friction and impulse get neutral values,
-/// which the caller may overwrite. `velocity`: see CableBlockTable::velocity [m/s]
+/// Appends a point to the columns with one row per point. The other columns get values without effect (most_ratio 1: no
+/// friction, else 0), which the caller may overwrite. `velocity`: see CableBlockTable::velocity [m/s]
 inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBlockTable& blocks) {
     blocks.stencil.push_back(stencil);
     blocks.velocity.push_back(velocity);

@@ -20,7 +20,7 @@ struct AttachmentTable {
     Column<std::uint32_t> slot;
     Column<Index> body;   // row of BodyTable
     Column<Range> nodes;  // range of rows in the columns `node` and `anchor`
-    // pose and motion of the attachment in this step; at its start a held node is at position + rotation * anchor
+    // pose and motion in this step; when the step begins, a held node is at position + rotation * anchor
     Column<RigidMotion> motion;
     Column<RigidMotion> initial;  // pose and motion of the attachment at the start of the script
     Column<MotionScript> script;

@@ -78,13 +78,14 @@ struct BodyTable {
     Column<Real> stable_step;   // longest stable step of the body in its shape at the last check [s]
     // Longest step at which the implicit elements (elements of clusters) of the body are stable; 0: it has none [s].
     Column<Real> cluster_step;
-    // 1: the body is asleep. Steps do not compute a sleeping body until another object touches it.
+    // 1: the body is asleep. Steps do not compute a sleeping body until it is woken, for example by a contact or a
+    // changed load.
     Column<std::uint8_t> asleep;
     Column<GhostKind> ghost;  // derived by note_ghosts; empty in a world that is not divided among ranks
     // 1: the body is asleep or a led ghost, so this step computes no forces on it. Derived by Model::note_rest.
     Column<std::uint8_t> idle;
-    // Number of steps until find_unstrained.h tests again whether the body is strained. Until then the body counts as
-    // undeformed and unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
+    // Number of steps for which the body still counts as undeformed and unrotated, so that its elements exert no force
+    // and are not computed. Then find_unstrained.h tests again whether it is strained. 0: the elements are computed.
     Column<std::uint16_t> unstrained;
     // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
@@ -96,8 +97,8 @@ struct BodyTable {
     Column<Real> drift, drift_before;
     // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
     // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: shape_drift at the end
-    // of the previous half; 0 if this was not the last distance measured there, because a creeping shape changes in one
-    // direction [m].
+    // of the previous half if the last measurement of that half gave the largest distance, as for a shape that creeps
+    // in one direction; else 0 [m].
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
@@ -105,8 +106,9 @@ struct BodyTable {
     Column<Real> frame_speed;  // greatest speed of a node relative to the frame in this step [m/s]
     // Greatest |position - displacement_origin - frame.offset| of the nodes [m].
     Column<Real> displacement;
-    // Sum of the changes of `displacement`, except its resets to zero [m]. Since an earlier time t no node has moved
-    // relative to the frame by more than travel - travel(t) + 2 displacement(t) (docs/methods/collision.md 2.1).
+    // Sum of the changes of `displacement`, except its resets to zero [m]. From any earlier time t until now, no node
+    // has moved relative to the frame by more than travel - travel(t) + 2 displacement(t) (docs/methods/collision.md
+    // 2.1).
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;

@@ -15,9 +15,10 @@ namespace skerry {
 
 /// Hashed grids, one for each cell width that occurs; all cell widths are powers of two. A box is stored in the grid
 /// whose cells are wider than the longest edge of the box by at most a factor of two, in the cell that contains its
-/// lower corner. Any box that overlaps the stored box reaches into this cell or comes closer to the cell than one cell
-/// width. Cells are found by hashing their integer coordinates (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003;
-/// grids of several sizes: Mirtich 1996). The next call of `build` reuses the memory.
+/// lower corner. The stored box can extend beyond this cell by less than one cell width. A box that overlaps it
+/// therefore reaches into the cell, or comes closer to the cell than one cell width. Cells are found by hashing their
+/// integer coordinates (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003; grids of several sizes: Mirtich 1996).
+/// The next call of `build` reuses the memory.
 class BoxGrid {
 public:
     /// Builds the grid from the boxes box[r] for all r in `rows`. These boxes must be finite. `box` must stay unchanged

@@ -22,7 +22,7 @@ struct BvhNode {
     Index skip;
     Index right;  // row of the right child; no_index for a leaf
     Index leaf;   // row of BvhLeafTable; no_index for an inner node
-    Index count;  // number of triangles of a leaf, which use the first lanes of its row; 0 for an inner node
+    Index count;  // number of triangles of a leaf, stored in the first lanes of its LeafTriangles; 0 for an inner node
 };
 
 inline constexpr int leaf_lanes = 8;
@@ -59,7 +59,7 @@ struct LeafFeatures {
 
 /// Boxes and topology of the tree nodes. Model::rebuild_outlines derives BvhTable and BvhLeafTable.
 struct BvhTable {
-    Column<Aabb> box;      // box of the tree node; out of date until a search uses the tree of the body again [m]
+    Column<Aabb> box;      // box of the tree node [m]; refitted before each use of the tree, else out of date
     Column<BvhNode> node;  // topology of the tree, which is built once from the rest shape
 
     void for_each_column(auto&& visit) {

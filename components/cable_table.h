@@ -25,16 +25,17 @@ struct CableTable {
     Column<std::uint32_t> slot;
     Column<CableControl> control;
     Column<Real> friction;  // friction coefficient at the points between the first and the last
-    Column<Real> released;  // greatest length at the end of the last step [m]; the control `rate` changes it from there
-    Column<Real> step;      // time for which the tensions acted in the last step; 0 before the first step [s]
-    Column<Real> work;      // work of the control on the cable up to the start of the last step [J]
+    // greatest length at the end of the last step [m]; with the control `rate`, each step adds rate times step length
+    Column<Real> released;
+    Column<Real> step;        // time for which the tensions acted in the last step; 0 before the first step [s]
+    Column<Real> work;        // work of the control on the cable up to the start of the last step [J]
     Column<Real> dissipated;  // energy that friction at the points dissipated up to the start of the last step [J]
     Column<Range> points;     // rows of the columns that have one row per point
     Column<Range> keys;       // rows of `key`
     // The following columns have one row per point. For the last point of a cable, `tension` and `length` are 0.
     AnchorColumns anchor;
-    Column<Real> tension;  // impulse of the tension, in the last step, in the segment that begins at this point [N s]
-    Column<Real> length;   // length, at the start of the last step, of the segment that begins at this point [m]
+    Column<Real> tension;  // impulse of the tension of the segment from this point to the next in the last step [N s]
+    Column<Real> length;   // length of the segment from this point to the next at the start of the last step [m]
     Column<TimeKey> key;   // prescribed values of all cables
 
     std::size_t size() const { return slot.size(); }
@@ -79,13 +80,12 @@ struct CableTable {
     }
 };
 
-/// Equations of a cable in a step, or of a tie of the kind `ball` (TieKind). They differ from those of a contact in
-/// that many points take part. For a tie: all points get the same impulse, and the sum of their velocities is zero.
+/// Equations of a cable, or of a tie of the kind `ball` (TieKind), in a step. Unlike a contact, they involve any number
+/// of points. For a tie, all points get the same impulse, and the sum of their velocities is zero.
 struct CableBlock {
     Index cable;   // row of CableTable; for a tie, row of TieTable
     Range points;  // rows of those columns of CableBlockTable that have one row per point
-    // True: the impulses are unknowns and are solved with the contacts of a region. False: the forces of the cable are
-    // known before the step.
+    // True: the impulses are unknowns of a contact region. False: the tensions are known before the solve.
     bool solved;
     bool by_length;  // true: the greatest length is prescribed; false: the tension of the first segment
     // If by_length: greatest rate of the length [m/s]. Otherwise: impulse of the tension of the first segment [N s].

@@ -42,7 +42,7 @@ struct CavityTable {
     Column<CavityFluid> fluid;
     Column<Real> mass;  // mass of the gas [kg]
     // Volume of a cavity that is not closed, with its faces at `corners` [m^3]. A step adds the volume that the faces
-    // sweep from there. Unused if `closed` is 1.
+    // sweep while they move on from `corners`. Unused if `closed` is 1.
     Column<Real> volume;
     Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
     Column<Real> volume_now;    // volume at the start of this step [m^3]
@@ -51,7 +51,7 @@ struct CavityTable {
     // Columns of the matrix: positions of the three nodes at the end of the last step [m]. Unused if `closed` is 1.
     Column<Mat3> corners;
     Column<Vec3> area;         // area times the normal that points from the body into the cavity, in this step [m^2]
-    Column<Real> swept_parts;  // working memory of add_cavity_forces: volumes by group of faces [m^3]
+    Column<Real> swept_parts;  // working memory of add_cavity_forces: swept volume of each group of faces [m^3]
     Column<TimeKey> key;       // keys of all cavities
 
     std::size_t size() const { return slot.size(); }

@@ -74,12 +74,13 @@ struct ColliderTable {
     Column<RigidMotion> initial;  // pose and motion of the collider at the start of the script
     Column<MotionScript> script;
     Column<Keyframe> keyframe;  // keyframes of all colliders; each script refers to a range of these rows
-    // surface properties of the collider; a negative property is replaced by the property of the touching body
+    // surface properties of the collider; a negative property is replaced by that of the collider's material or,
+    // without a material, by that of the touching body
     Column<SurfaceProperties> surface;
     Column<Index> material;          // row of MaterialTable: material of the surface, or no_index
     Column<CollisionFilter> filter;  // groups that the collider belongs to, and groups that it collides with
     Column<Index> body;              // row of BodyTable: kinematic body of a mesh collider, else no_index
-    // Counter whose increase bounds the distance that the points of the collider near a body move meanwhile [m].
+    // Counter: in any time interval, no point of the collider near a body moves further than the counter increases [m].
     Column<Real> travel;
 
     /// Visits the columns with one row per collider. The column `keyframe` is visited by for_each_column only.

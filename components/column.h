@@ -92,8 +92,8 @@ private:
 
     static T* rows(const RowMemory& memory) { return static_cast<T*>(memory.rows()); }
 
-    // All accesses to the rows call one of these two functions, which check the access if checks are enabled. Both are
-    // always inlined, so that without checks they cost nothing, even in a build without optimisation.
+    // All accesses to the rows call seen() or changed(), which check the access if checks are enabled. They are always
+    // inlined, so that without checks they cost nothing, even in a build without optimisation.
     [[gnu::always_inline]] const RowMemory& seen() const {
         if constexpr (access_is_checked) check_access(this, sizeof *this, false);
         return memory_;

@@ -3,9 +3,10 @@
 
 namespace skerry {
 
-/// Returns x, computed at this place of the code, as a value that gcc regards as new. gcc otherwise moves an operation
-/// to the use of its result and keeps its operands until then, or keeps results for rare code; both then go through
-/// memory. Without AVX a vector of a kernel fills several registers, and x is returned as it is.
+/// Makes gcc compute x at the call, not later: the empty asm statement may change x, as far as gcc knows. Otherwise gcc
+/// may delay the operation until its result is used and keep the operands until then, or keep results that only rare
+/// branches use. Registers then run out, and values go through memory. Without AVX a vector of a kernel does not fit
+/// into one register, as the asm constraint requires; x is then returned unchanged.
 template <class T>
 [[gnu::always_inline]] inline T computed_here(T x) {
 #ifdef __BMI2__  // tested instead of __AVX__, which cmake/flags.cmake hides from Eigen

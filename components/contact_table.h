@@ -46,8 +46,9 @@ struct MembersOf<Stencil> {
     static std::span<const Member> list();
 };
 
-/// Tangent of a contact along which its friction coefficients apply. Across this direction the coefficients are
-/// multiplied by `across`, in (0, 1]. If `across` is 1, friction is the same in all directions.
+/// Tangent of a contact along which its friction coefficients apply. In the tangent plane, perpendicular to this
+/// direction, the coefficients are multiplied by `across`, in (0, 1]. If `across` is 1, friction is the same in all
+/// directions.
 struct FrictionAxis {
     Vec3 direction = Vec3::Zero();
     Real across = 1;
@@ -60,12 +61,13 @@ struct ContactRow {
     ContactKey key;
     ContactKind kind;
     Stencil stencil;
-    Vec3 point;     // contact point on the second partner [m]
-    Vec3 normal;    // unit vector from the second to the first partner; the first partner owns the point or first edge
+    Vec3 point;  // contact point on the second partner [m]
+    // unit vector from the second partner to the first; the first partner has the point, or the first edge
+    Vec3 normal;
     Real gap;       // `distance` minus the contact distance [m]
     Real distance;  // signed distance of the two surfaces; negative if they overlap [m]
-    // Velocity of an analytic collider at the contact point; 0 for two bodies, whose motion is in the node velocities
-    // [m/s].
+    // Velocity of an analytic collider at the contact point [m/s]; 0 for two bodies, whose velocities the stencil
+    // gives.
     Vec3 surface_velocity;
     Real static_friction;
     Real dynamic_friction;

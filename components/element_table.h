@@ -21,7 +21,7 @@ using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l is no
 using ElementGradient = std::array<ElementLane, 3>;  // component i of lane l is gradient[i][l] [1/m]
 using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
 using ElementForm = std::array<ElementLane, 6>;      // symmetric matrix: xx, yy, zz, xy, yz, zx
-// coefficients q [1/(kg m^2)] and b [kg m^2] of the masses of frame_masses.h
+// coefficients q [1/(kg m^2)] and b [kg m^2] of the masses assigned to an element (frame_masses.h)
 using FrameMass = std::array<ElementLane, 2>;
 
 /// Number of Maxwell elements (a spring in series with a dashpot) that act in parallel with the material law of each
@@ -29,10 +29,11 @@ using FrameMass = std::array<ElementLane, 2>;
 inline constexpr std::size_t maxwell_count = 3;
 // Relaxation rates of the Maxwell elements of a body, the highest first [1/s]
 using RelaxationRates = std::array<Real, maxwell_count>;
-// Strains of the last step on which the losses of an element depend, in single precision. All strains are stored
-// doubled, because twice Green's strain is F^T F - I. Entries 0 to 5: components xx, yy, zz, xy, yz, zx of Green's
-// strain. Entries 6 to 23: strains of the springs of the Maxwell elements, six components each. Entry 24: volume strain
-// of the spring of the bulk viscosity. Entry 25 is unused; with it a block fills whole cache lines.
+// Strains of an element at the last step, in single precision; the viscous stress of the present step depends on them.
+// Each number is twice the strain, because twice Green's strain is F^T F - I. Entries 0 to 5: components xx, yy, zz,
+// xy, yz, zx of Green's strain. Entries 6 to 23: strains of the springs of the Maxwell elements, six components each.
+// Entry 24: volume strain of the spring of the bulk viscosity. Entry 25 is unused; with it a block fills whole cache
+// lines.
 using SpringStrain = std::array<Lanes<float, element_lanes>, 8 + 6 * maxwell_count>;
 inline constexpr std::size_t bulk_entry = 6 + 6 * maxwell_count;  // entry of the spring of the bulk viscosity
 
@@ -42,8 +43,8 @@ struct TetrahedronBlockTable {
     Column<TetrahedronNodes> node;
     Column<ElementLane> volume;    // volume at rest; 0 in an unused lane [m^3]
     Column<ElementLane> altitude;  // smallest altitude at rest; infinite in an unused lane [m]
-    // Leeway: factor on the largest allowed change of the deformation gradient F in a step (max_strain_step). It is
-    // above 1 for a tetrahedron that an implicit element covers.
+    // Factor on max_strain_step, the largest change of the deformation gradient that a step may make. It is above 1 for
+    // a tetrahedron that an implicit element covers.
     Column<ElementLane> leeway;
     Column<std::uint8_t> sliver;  // bit l: the tetrahedron of lane l is a sliver (element_list.h)
     // No tetrahedron of the block changes the sign of its volume while BodyTable::travel is below this value [m].
@@ -72,12 +73,13 @@ struct ElementBlockTable {
     Column<ElementLane> volume;  // volume at rest [m^3]; 0 for an unused lane and for an inactive inversion barrier
     // weight of the element in the division of a node's mass among its elements (stable_step.h)
     Column<ElementLane> mass_share;
-    // Symmetric matrix Q [1/(kg m^2)]. The element gets the part G Q^-1 G^T of the mass of its nodes, where the rows of
-    // G are the gradients of the nodes (mass_forms.h). Q = 0: mass_share is used instead.
+    // Symmetric matrix Q [1/(kg m^2)]. For the bound on the stable step, the element gets the part G Q^-1 G^T of the
+    // mass of its nodes. The rows of G are the gradients of the nodes (mass_forms.h). Q = 0: mass_share is used
+    // instead.
     Column<ElementForm> mass_form;
     // `frame_mass`: coefficients of the mass assigned to the element, computed with one rotation for the whole body
-    // (frame_masses.h). `frame_bound`: upper bound of the squared highest frequency omega^2 at rest that follows from
-    // these masses [1/s^2]; 0: the body has no such masses.
+    // (frame_masses.h). `frame_bound`: upper bound of omega^2 that follows from these masses, with the highest circular
+    // frequency omega in the rest shape [1/s^2]; 0: the body has no such masses.
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound;
     // Stiffness that the implicit integration assumes for an element of a cluster; 0: the element is explicit [Pa].
@@ -97,13 +99,14 @@ struct ElementBlockTable {
     Column<ElementLane> own_frequency;        // upper bound of the circular frequencies of the element at rest [1/s]
     // stiffness of the spring of each Maxwell element, as a fraction of the stiffness of the material law
     Column<Real> relaxing_share;
-    // Rotation from the axes of the mesh to the axes in which the gradients are stored. It turns the axes of
-    // anisotropic materials. turn_elements() rotates the gradients and updates this matrix.
+    // Rotation from the axes of the mesh to the axes in which the gradients are stored. The axes of anisotropic
+    // materials are given in the mesh and are rotated by it. turn_elements() rotates the gradients and updates this
+    // matrix.
     Column<Mat3> orientation;
     Column<Index> body;      // row of BodyTable
     Column<Index> material;  // row of MaterialTable
     Column<ElementPart> part;
-    Column<std::uint8_t> opens_patch;  // 1: the block is the first block of a patch
+    Column<std::uint8_t> opens_patch;  // 1: the block is the first block of a patch (ElementPatches)
     // Ratio of viscosity to modulus of the implicit elements in the block; 0 without implicit elements [s].
     Column<Real> viscous_time;
 
@@ -137,7 +140,7 @@ struct ElementBlockTable {
 /// Vector x, y, z. The fourth number is unused, so that the vector fills a register of 256 bits.
 using PaddedVec3 = Lanes<Real, 4>;
 
-/// Number of reals in a slot, the place of a node in a patch (ElementPatches): the size of a PaddedVec3.
+/// Number of reals in a slot. A slot stores a vector of one node of a patch (ElementPatches) as a PaddedVec3.
 inline constexpr Index slot_width = sizeof(PaddedVec3) / sizeof(Real);
 
 /// Nodes of the elements of a block. Row k of a block holds the k-th node of each element, counted from 0. The gradient
@@ -172,7 +175,7 @@ struct ElementPatches {
     Ragged<Index> slots_of_node;  // by node: its slots, ascending
     Column<PaddedVec3> position;  // by slot: position of the node [m]; scratch
     Column<PaddedVec3> force;     // by slot: sum of the forces of the patch on the node [N]; scratch
-    // by patch: energy that the elements of the patch lost by relaxation in this step [J]; scratch
+    // by patch: energy that the Maxwell elements in the patch dissipated in this step [J]; scratch
     Column<Real> relaxed;
     // Viscous impulse of the elements, by block; only set for blocks that are viscous in this step. The column is empty
     // if no block can be viscous. Scratch.

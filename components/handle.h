@@ -28,8 +28,8 @@ using ColliderHandle = Handle<struct ColliderTag>;      // refers to a collider,
 using AttachmentHandle = Handle<struct AttachmentTag>;  // refers to nodes with a prescribed motion
 using FibreHandle = Handle<struct FibreTag>;            // refers to a family of fibres in a body
 
-/// Maps handles to rows of a table. When rows are erased, later rows get lower indices, but their handles stay valid
-/// (rows_moved).
+/// Maps handles to rows of a table. When rows are erased, later rows get lower indices. Their handles stay valid,
+/// because rows_moved() updates the map.
 template <class HandleType>
 class HandleMap {
 public:
@@ -70,7 +70,8 @@ public:
         if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
     }
 
-    /// Ensures that later handles differ from all handles that `other` has issued. `other`: map of the same world.
+    /// Ensures that handles made from now on differ from all handles that `other` has issued, so that these stay stale.
+    /// `other`: map of the same world, which this map replaces (World::reset).
     void differ_from(const HandleMap& other) {
         least_generation_ = std::max(least_generation_, other.least_generation_);
         for (std::size_t slot = 0; slot < other.row_.size(); ++slot)

@@ -18,12 +18,13 @@ struct ImplicitNodeTable {
     Column<Vec3> left;
     // kick_implicit_bodies writes the next three columns in this step.
     Column<Vec3> elastic_force;
-    // impulse on the nodes in the order of the factorised matrix, later overwritten by the solution [N s]
+    // impulse on the nodes in the order of the factorised matrix [N s]; the solve overwrites it with the velocities w
+    // [m/s]
     Column<Vec3> impulse;
-    // Velocity w at the end of the step, at first without the effect of contacts. strain_implicit_bodies adds this
-    // effect.
+    // Velocity w at the end of the step. kick_implicit_bodies writes it without the effect of contacts;
+    // strain_implicit_bodies adds this effect.
     Column<Vec3> velocity_next;
-    // solve_regions adds the impulses of contacts to the next column, which is zero at the start.
+    // solve_regions adds the impulses of contacts to the next column, which is zero when the step begins.
     Column<Vec3> contact_impulse;  // sum of the contact impulses on the node, in the world frame [N s]
     // strain_implicit_bodies writes the next two columns.
     Column<Vec3> displacement_next;

@@ -53,8 +53,8 @@ struct MimicRow {
 template <>
 struct NumbersOf<MimicRow> : Reals<2> {};
 
-/// Impulses along the joint axis, of the motor (`motor`), and of spring, damper and friction together (`passive`) [N s
-/// or N m s].
+/// Impulses along the joint axis [N s or N m s]. `motor`: of the motor. `passive`: of spring, damper and friction
+/// together.
 struct AxisImpulses {
     Real motor = 0, passive = 0;
 };
@@ -88,10 +88,10 @@ struct JointTable {
     // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
     Column<Real> first_coordinate;  // joint coordinate when the joint was added [rad or m]
-    // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
-    // body [N s, N m s].
+    // Impulse and angular impulse that the joint exerted on the first body in the last step, along the axes of the
+    // joint frame of the second body [N s, N m s].
     Column<Vec3> impulse, moment;
-    // axes of the joint frame of the second body at the start of the last step, in the world
+    // columns: axes of the joint frame of the second body at the start of the last step, in world coordinates
     Column<Mat3> impulse_axes;
     Column<AxisImpulses> axis_impulse;  // impulses along the joint axis in the last step
     Column<Real> step;    // time for which the impulses acted in the last step; 0 before the first step [s]
@@ -159,12 +159,13 @@ struct AxisLaw {
 struct MimicShare {
     Real coefficient = 0;  // c of the block; 0: the block belongs to no mimic equation
     bool leads = false;    // true for the block of the leader
-    // own_node() of the other of the two blocks; needed to put both blocks into one contact region
+    // own_node() of the other block of the equation; serves to put both blocks into one contact region
     Index other_node = no_index;
 };
 
 /// Three constraint equations of one joint in this step. They constrain either the relative velocity at the joint point
-/// or the relative angular velocity of the two bodies. Impulses in the equations act on the first body.
+/// or the relative angular velocity of the two bodies. The impulses of the equations act on the first body, and
+/// reversed on the second.
 struct JointBlock {
     Index joint;          // row of JointTable
     bool turning;         // true: the equations constrain angular velocities
@@ -179,9 +180,9 @@ struct JointBlock {
     MimicShare mimic{};
     Vec3 shift = Vec3::Zero();  // vector from the joint's point to `point`, in the axes of the first joint frame [m]
 
-    /// A node of a body of the block that impulses can move; no_index if there is none.
+    /// first_node, or second_node if impulses cannot move the first body; no_index if they can move neither body.
     Index own_node() const { return first_node == no_index ? second_node : first_node; }
-    /// A node that impulses of the block, or of the other block of its mimic equation, can move.
+    /// own_node(), or the one of the other block of the mimic equation if this block can move no body.
     Index moving_node() const { return own_node() == no_index ? mimic.other_node : own_node(); }
     /// Calls join(a, b) for nodes a, b of bodies that the block couples. `join` must put both nodes into the same
     /// contact region.
@@ -191,16 +192,15 @@ struct JointBlock {
     }
 };
 
-/// Blocks of all joints, in joint order, then the blocks of mimic equations. In the first part, the blocks of one joint
-/// are adjacent.
+/// Blocks of all joints in joint order, with the blocks of one joint adjacent; then the blocks of mimic equations.
 struct JointBlockTable {
     Column<JointBlock> block;
     // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
     Column<AxisImpulses> axis_impulse;  // by block: impulses along the joint axis
     Column<Real> coordinate;            // by row of JointTable: joint coordinate at the start of the step
-    // For each row of JointTable: 1 if some body is asleep and neither body of the joint can move (asleep, held, or the
-    // world). The joint then has no block and keeps its last impulse.
+    // For each row of JointTable: 1 if neither body of the joint can move, because it is asleep, held, or the world.
+    // The joint then has no block and keeps its last impulse. While no body of the world sleeps, the value is 0.
     Column<std::uint8_t> resting;
 
     std::size_t size() const { return block.size(); }

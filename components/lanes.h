@@ -47,9 +47,9 @@ using KernelReal = Real4;
 #endif
 template <class T>
 inline constexpr std::size_t lanes_of = sizeof(T) / sizeof(Real);
-// number of KernelReal vectors per block
+// number of KernelReal vectors that hold the lanes of one block
 inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>;
-/// One value for each register-wide part of a block.
+/// One value for each KernelReal of a block: one if a register holds all eight lanes, two if it holds four.
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 
@@ -73,7 +73,8 @@ inline Real8 load_reals(const Lanes<float, element_lanes>& from) {
     *reinterpret_cast<Real8InMemory*>(to.lane) = from;
 }
 
-/// Loads vector number `part` of the lanes of a block. A Real8 contains all lanes.
+/// Loads one T from the eight lanes of a block: all lanes for a Real8; lanes 0 to 3 (part 0) or 4 to 7 (part 1) for a
+/// Real4.
 template <class T>
 [[gnu::always_inline]] inline T load_part(const Lanes<Real, element_lanes>& from, std::size_t part) {
     if constexpr (lanes_of<T> == element_lanes)

@@ -58,9 +58,9 @@ inline constexpr std::uint64_t value_count<ElementPart> = 4;
 inline constexpr Real guard_modulus = 5;
 
 /// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero. If
-/// the material yields, the part `shear` has lambda = -2/3 mu. Its bulk modulus lambda + 2/3 mu is then zero, without
-/// which plastic flow would lock. The constants of an inversion barrier include no damping; only inversion barriers
-/// that belong to a cluster are viscous.
+/// the material yields, the part `shear` has lambda = -2/3 mu. Its bulk modulus lambda + 2/3 mu is then zero. Otherwise
+/// plastic flow, which keeps the volume, would lock. The constants of an inversion barrier include no damping; only
+/// inversion barriers that belong to a cluster are viscous.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,
@@ -77,7 +77,8 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
 }
 
 /// Surface properties of a material, body or collider. A negative property of a body is replaced by the property of its
-/// material. A negative property of a collider is replaced by the property of the touching body.
+/// material. A negative property of a collider is replaced by the property of its material or, without a material, by
+/// that of the touching body.
 struct SurfaceProperties {
     Real static_friction = -1;
     Real dynamic_friction = -1;
@@ -96,7 +97,9 @@ struct MaterialTable {
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
     Column<OrthotropicModuli> orthotropic;  // used by the law `orthotropic`
-    Column<Real> damping;              // decay rate of the velocities of deformation; rigid motion is not damped [1/s]
+    // decay rate of velocities relative to the rigid motion of the body; of all its velocities if nodes are pinned
+    // [1/s]
+    Column<Real> damping;
     Column<std::uint8_t> sets_losses;  // 1 if the user has set a loss factor above 0
     Column<std::uint32_t> slot;        // handle slot
 

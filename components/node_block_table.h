@@ -31,15 +31,16 @@ inline Range step_nodes_of(Range all, Index core_nodes) {
 inline constexpr Index nodes_per_block = 256;
 
 /// Sums over the nodes of one block that can move. Positions x and velocities v are relative to the first node of the
-/// body. damp_velocity adds the sums in block order and overwrites those of the first block with the totals of the
-/// body. In the totals, `momentum` is in the world frame, and `angular_momentum` and `second_moment` are about the
-/// centre of mass.
+/// body. damp_velocity adds up the sums of all blocks of a body in block order, and stores the totals in the entry of
+/// the first block. In the totals, `momentum` is in the world frame, and `angular_momentum` and `second_moment` are
+/// about the centre of mass.
 struct NodeBlockSums {
     Real mass;              // total mass [kg]
     Vec3 momentum;          // sum of m v, with node masses m [kg m/s]
     Vec3 first_moment;      // sum of m x [kg m]
     Vec3 angular_momentum;  // sum of m x cross v [kg m^2/s]
-    // sum of m y x^T, with the position y = x - lag v at the time of v (damp_velocity.cpp) [kg m^2]
+    // sum of m y x^T, with the position y = x - lag v at the time of v; `lag`: time by which positions are ahead of
+    // velocities (damp_velocity.cpp) [kg m^2]
     Mat3 second_moment;
     Real dissipated;  // kinetic energy of deformation that damping removes from the nodes of the block [J]
 };

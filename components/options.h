@@ -52,7 +52,7 @@ enum class Backend {
     openmp,     // OpenMP
     threads,    // threads of the C++ standard library
     serial,     // no library: the calling thread runs all tasks
-    automatic,  // the first backend of this build
+    automatic,  // the first backend of this list that this build contains
 };
 /// Initial contact impulses of the solver (docs/methods/region_solver.md 7).
 enum class WarmStart {
@@ -175,7 +175,7 @@ struct EnumNames<Integrator> {
     }};
 };
 
-/// Option names of earlier versions. Each has a hint for users who still write the old name.
+/// Option names of earlier versions, each with a hint for users who still write it.
 template <class Enum>
 struct RemovedNames {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 0> table{};

@@ -1,5 +1,5 @@
-// Pairs of close objects: two bodies, a body and a collider, or a body and itself. Each pair lists the features
-// (points, edges, triangles) that could touch soon.
+// Pairs of close objects: two bodies, a body and a collider, or a body and itself. Each pair has a list of candidates:
+// pairs of features (points, edges, triangles) that could touch soon.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ namespace skerry {
 /// TriangleTable, EdgeTable or ColliderTable, depending on the kind of the pair and of the features.
 struct Candidate {
     std::uint64_t feature;  // ContactKey::feature
-    Index first;   // row of the vertex, of an edge (of the first body), or of a triangle near a point of a collider
+    // row of the vertex, of the edge of the first body, or, against a point of a collider, of the triangle
+    Index first;
     Index second;  // row of the triangle, of the edge of the second body, or of the collider
 };
 template <>
@@ -37,7 +38,7 @@ enum class PairState : std::uint8_t { unknown, apart, overlapping };
 template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;
 
-/// Position in the concatenated candidate lists of all pairs: a pair, and an index in the candidate list of the pair.
+/// One candidate of PairTable: row of its pair, and index in the candidate list of this pair.
 struct CandidatePlace {
     Index pair;
     Index candidate;
@@ -55,8 +56,7 @@ struct NearCandidate {
 struct LeafPair {
     Index first;
     Index second;
-    // Features of the two leaves that are not listed as candidates may approach each other by this distance before
-    // they could touch [m].
+    // Features of the two leaves that are not candidates cannot touch before they have approached by this distance [m].
     Real spare;
 };
 template <>
@@ -69,8 +69,9 @@ struct LeafPairTable {
     // The first row is the pair of the root with itself. It represents all pairs of leaves that are not listed. The
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
     Column<LeafPair> listed;
-    Column<LeafPair> before;    // working memory: the list `listed` before it is made anew
-    Column<LeafPair> searched;  // pairs whose features were compared in the last search; spare: margin of the search
+    Column<LeafPair> before;  // working memory: the list `listed` before it is made anew
+    // pairs of leaves whose features the last search compared; LeafPair::spare is the margin of this search
+    Column<LeafPair> searched;
 };
 
 /// Working memory of the searches of bodies for contacts with themselves (self_motion.h). All columns are empty while
@@ -100,27 +101,26 @@ struct PairTable {
     Column<std::uint8_t> idle;
     Column<Index> looked_at;   // number of candidates to test; 0 for an idle pair
     Column<Vec3> frame_apart;  // MovingFrame::position of the first body minus that of the second body [m]
-    // path length of one body's frame relative to the other body's frame since the pair was found [m]
+    // length of the path of the first body's frame relative to the second body's frame since the pair was found [m]
     Column<Real> frame_path;
     // Bound on the relative motion of the partners so far, computed in every step [m]. Two bodies: BodyTable::travel of
     // both bodies plus frame_path. Body and collider: `travel` of the body and of the collider, plus the path length of
     // the body's frame.
     Column<Real> travel;
     Column<Real> travel_bound;  // `travel` plus the distance by which the partners may approach in this step [m]
-    // Distance by which the partners may approach in this step at their greatest speeds [m]. It is computed from
-    // velocities in the world, not from velocities in the frames: frames are not part of the state, so no contact may
-    // depend on them.
+    // Distance by which the partners may approach in this step at their greatest speeds [m]. Contacts depend on it, so
+    // it is computed from velocities in the world: the moving frames of the bodies are not part of the state.
     Column<Real> closing;
-    // Relative motion of the partners for which an earlier attempt at this step requested a longer candidate list [m].
-    // When the list has been rebuilt for this motion, the sign is made negative, so that a list is not requested twice
-    // for the same motion.
+    // Relative motion of the partners for which an earlier attempt at this step requested a longer candidate list [m];
+    // 0: no request. Once the list has been rebuilt for this motion, the value is made negative, so that a list is not
+    // requested twice for the same motion.
     Column<Real> longer_motion;
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
-    // 1: the candidate list was made at the positions at the start of this step. Displacements of the bodies in their
-    // frames before the step then do not shorten its validity (is_beyond_list).
+    // 1: the candidate list was made at the positions at the start of this step. The list then stays valid longer:
+    // displacements of the bodies in their frames before the step do not count (is_beyond_list).
     Column<std::uint8_t> fresh;
-    // State of the surfaces at the last search. Surfaces that are apart stay apart, because find_crossings prevents
-    // them from crossing.
+    // State of the surfaces at the last search; not used for a body and an analytic collider. Surfaces that are apart
+    // stay apart, because find_crossings prevents them from crossing.
     Column<PairState> state;
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by `feature`
     // Value of travel_bound below which the features of a candidate cannot touch, by pair and candidate [m].
@@ -165,8 +165,7 @@ struct PairTable {
     std::size_t size() const { return key.size(); }
 };
 
-/// Result of a search for two features: the candidate, and the value of travel_bound below which the two features
-/// cannot touch.
+/// A candidate that a search found, and the value of PairTable::travel_bound below which its features cannot touch.
 struct FoundCandidate {
     Candidate candidate;
     Real asleep_until;  // [m]
@@ -194,7 +193,8 @@ struct CrossingTable {
     // True: if a pair moves further than its candidate list is valid for, the list is extended. False: the step is
     // rejected.
     bool extends_lists = true;
-    bool beyond_lists = false;  // true: the last attempt at the step was stopped to extend candidate lists
+    // true: find_crossings stopped the last attempt at the step, so that candidate lists are extended
+    bool beyond_lists = false;
     // True: crossings in this attempt are permitted, and their pairs are marked as overlapping.
     bool last_try = false;
     std::uint64_t tested = 0;       // number of feature pairs tested since the world was made
@@ -213,9 +213,9 @@ struct SearchMemory {
     // For each body and each collider: 1 if the object was added, or moved by the user, since the last search. Its
     // distances to other objects are then unknown. The values are those at the start of the step.
     Column<std::uint8_t> body_forgotten, collider_forgotten;
-    // For each body: 1 if its speeds in BodyTable::max_speed and frame_speed are out of date. After a user has added or
-    // moved a body they are out of date until a step is committed, because a rejected attempt leaves both columns
-    // unchanged. Valid while any_unmeasured is set.
+    // For each body: 1 if BodyTable::max_speed and frame_speed are out of date, because the user has added or moved the
+    // body and no step has been committed since. Rejected attempts do not update the two columns. Valid while
+    // any_unmeasured is set.
     Column<std::uint8_t> body_unmeasured;
     bool any_unmeasured = false;
     // For each body: sum of its travel, the path length of its frame, and the distance it may move in this step [m].
@@ -243,12 +243,13 @@ struct SearchMemory {
     Column<Index> planes;                        // rows of planes in ColliderTable; planes have no box in the grid
     std::vector<Column<FoundPair>> found_pairs;  // by block of the broad search: found pairs in no particular order
     Column<FoundPair> pairs;                     // all found pairs, in key order
-    // Ranges of `pairs` with equal kind and equal slot of the first body. They serve to sort `pairs`.
+    // Begin and end of each range of `pairs` with the same slot of the first body and the same key type (two bodies, or
+    // body and collider). They serve to sort `pairs`.
     Column<Index> group_begin, group_end;
     // For each pair: row of the pair in the previous PairTable. It is no_index for a new pair, and for a pair of an
     // object that the user has moved.
     Column<Index> old_row;
-    Column<Index> old_list;  // by index of a candidate list: previous index of its memory
+    Column<Index> old_list;  // by index of a candidate list: index of the old list whose memory it takes over
     // For each previous candidate list: 1 if its pair still exists and keeps the list; 0 if a new pair may reuse its
     // memory.
     Column<std::uint8_t> given_away;

@@ -16,8 +16,8 @@ template <class T>
     for (std::size_t at = 0; at < count * sizeof(T); at += line) __builtin_prefetch(bytes + at);
 }
 
-/// Prefetches the cache lines of `count` items that come `ahead` items after `current`. These may be past the end of
-/// the array: prefetching there does no harm.
+/// Prefetches the cache lines of `count` items that come `ahead` items after `current`. The items may be past the end
+/// of the array, because a prefetch never faults.
 template <class T>
 [[gnu::always_inline]] inline void prefetch_lines_ahead(const T* current, std::size_t ahead, std::size_t count) {
     // The address is computed as an integer, because pointer arithmetic past the end of the array is undefined.

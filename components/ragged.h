@@ -11,7 +11,7 @@ namespace skerry {
 /// Read-only view of a Ragged.
 template <class T>
 struct RaggedView {
-    // Index in `item` of the first item of each row, followed by the number of items: row_count + 1 entries.
+    // Index in `item` of the first item of each row; last entry: number of items. The span has row_count + 1 entries.
     std::span<const Index> offset;
     std::span<const T> item;
 
@@ -25,7 +25,8 @@ struct RaggedView {
 /// Rows of different lengths. Row r consists of item[offset[r]] .. item[offset[r + 1] - 1].
 template <class T>
 struct Ragged {
-    // Index in `item` of the first item of each row, followed by the number of items: row_count + 1 entries, or none.
+    // Index in `item` of the first item of each row; last entry: number of items. The column has row_count + 1 entries,
+    // or none if there are no rows.
     Column<Index> offset;
     Column<T> item;
 

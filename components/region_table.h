@@ -22,7 +22,8 @@ enum RegionShortcut : std::uint8_t {
     shortcut_separating = 2,    // no contact closes, so all impulses are zero
     shortcut_certified = 4,     // the warm start is the solution
     shortcut_frictionless = 8,  // the contacts have no friction: one equation per contact
-    shortcut_in_lanes = 16      // the region is small and was solved side by side with other regions
+    // the region is small and was solved together with other regions, one region per vector lane
+    shortcut_in_lanes = 16
 };
 
 /// One row per region. Regions are sorted by the row of their first contact.
@@ -38,7 +39,7 @@ struct RegionTable {
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
     Column<Real> dissipated;  // energy dissipated by the contacts of the region in this step [J]
-    Column<Real> push_work;   // energy added by the velocities push_out, which move positions only [J]
+    Column<Real> push_work;   // energy that the displacements by NodeTable::push_out add [J]
     // Rows of the regions in the order in which the solver starts them: first large regions by descending predicted
     // cost, so that no long task starts late, then small regions by descending size (single contacts last).
     Column<Index> order;
@@ -69,8 +70,8 @@ struct RegionTable {
     }
 };
 
-/// Number of sweeps of the regions in earlier steps, sorted by ascending id. This table serves only to predict the
-/// solution time of a region. No result depends on it, so it is not part of the state.
+/// One row per region of the last step, in ascending order of id: statistics that predict the solution time of the
+/// region. No result depends on this table, so it is not part of the state.
 struct RegionHistoryTable {
     Column<ContactKey> id;
     Column<Index> contacts;  // number of contacts

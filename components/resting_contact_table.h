@@ -5,9 +5,9 @@
 
 namespace skerry {
 
-/// The last contacts found for pairs of a sleeping body and another sleeping body or a collider at rest, in key order.
-/// When a body wakes, the stored impulses are the warm start of these contacts. All columns of `contact` other than
-/// key, normal and impulse are stored only for display.
+/// Contacts between a sleeping body and another sleeping body or a collider at rest, as last found, in key order. When
+/// a body wakes, the stored impulses are the warm start of these contacts. All columns of `contact` other than key,
+/// normal and impulse are stored only for display.
 struct RestingContactTable {
     ContactTable contact;  // the column `region` is no_index
     Column<Real> step;     // time for which forces acted in the step that computed `impulse` [s]

@@ -40,22 +40,23 @@ struct RigidBodyTable {
     Column<Mat3> inverse_inertia;  // inverse inertia in the world frame [1/(kg m^2)]
     // Impulse of gravity and external loads, and angular impulse about the centre of mass [N s, N m s].
     Column<Vec3> kick, moment_kick;
-    // solve_regions adds to the next columns, which are zero at the start. Impulse of contacts, and its angular impulse
-    // about the centre of mass [N s, N m s].
+    // solve_regions adds to the columns contact_impulse to push_spin, which are zero when the step begins. The first
+    // two are the impulse of contacts and its angular impulse about the centre of mass [N s, N m s].
     Column<Vec3> contact_impulse, contact_moment;
-    // Velocity and angular velocity of the push-out: they change the pose in this step, but not the momentum [m/s,
-    // rad/s].
+    // Velocity and angular velocity of the push-out, which separates overlapping bodies: they change the pose in this
+    // step, but not the momentum [m/s, rad/s].
     Column<Vec3> push_velocity, push_spin;
     // turn_rigid_bodies writes the next two columns.
     Column<Vec3> center_next;
     Column<Mat3> rotation_next;
     // strain_implicit_bodies writes the next columns for bodies with large deformation. `moments_next`, `axes_next`:
-    // moments and axes of inertia of the new shape. `rotation_shaped`: rotation of the new principal frame before the
-    // rigid rotation of this step. For all other bodies the values equal moments, axes and rotation.
+    // moments and axes of inertia of the new shape. `rotation_shaped`: rotation of the principal frame of the new
+    // shape, without the rigid rotation of this step. For all other bodies the three columns equal `moments`, `axes`
+    // and `rotation`.
     Column<Vec3> moments_next;
     Column<Mat3> axes_next, rotation_shaped;
-    // Angular impulse that keeps the frame of a held body on its prescribed path against the elastic forces of the body
-    // [N m s].
+    // Angular impulse by which the attachment of a held implicit body balances the elastic forces, so that the frame of
+    // the body follows its prescribed motion [N m s].
     Column<Vec3> hold_moment;
     Column<std::uint8_t> large_next;
 

@@ -13,13 +13,14 @@ namespace skerry {
 inline constexpr std::size_t row_alignment = 64;
 
 /// Allocates `bytes` bytes (0 is allowed) with operator new. On Linux, memory that covers complete pages of 2 MiB is
-/// requested as such pages. With pages of 4 kB, address translation takes 4 % of a step of 360,000 tetrahedra, because
-/// the columns are larger than the memory that the translation cache of a core covers. Throws std::bad_alloc.
+/// requested as such pages. Reason: with pages of 4 kB, address translation takes 4 % of a step of 360,000 tetrahedra,
+/// because the TLB of a core does not cover the columns. Throws std::bad_alloc.
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory) noexcept;
 
 /// Rows of one column, of a trivially copyable type that only the caller knows. `row_bytes` is the size of a row
-/// [bytes] and must be equal in every call. Rows are copied bytewise and need no destructor. The memory never shrinks.
+/// [bytes] and must be the same in every call. Rows are copied bytewise and need no destructor. The memory never
+/// shrinks.
 class RowMemory {
 public:
     RowMemory() = default;

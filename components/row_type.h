@@ -30,7 +30,7 @@ struct Member;
 struct RowType {
     std::size_t bytes;                            // size of a row [bytes]
     void (*make)(void* rows, std::size_t count);  // value-initialises `count` rows; vectors and matrices become zero
-    // Number of numbers in a row that consists of numbers of one type, without padding; 0 for all other rows.
+    // If the row consists of numbers of one type, without padding: how many; 0 for all other rows.
     std::size_t width = 0;
     NumberType number = NumberType::uint8;  // type of the numbers in a row
     std::uint64_t values = 0;               // value_count of the type; 0: any number is valid
@@ -90,8 +90,8 @@ struct MembersOf;
 template <class Enum>
 struct EnumNames;
 
-/// Number n of values of a bool, or of an enum with the values 0 to n - 1; a loaded value must be below n. 0 for other
-/// types and for enums whose values are not checked.
+/// For bool (2) and for an enum with the values 0 to n - 1 (n): number of its values; a loaded value must be smaller.
+/// For other types, and for enums whose values are not checked: 0.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>
@@ -137,7 +137,8 @@ constexpr RowType describe() {
 template <class T>
 inline constexpr RowType row_type = row_type_detail::describe<T>();
 
-/// Offset of a member from the start of a struct S [bytes].
+/// Offset of a member from the start of a struct S [bytes]. offsetof() cannot be used, because it takes no pointer to
+/// member; zeroed memory takes the place of an object of type S.
 template <class S, class T>
 std::size_t member_offset(T S::*member) {
     alignas(S) static const std::byte memory[sizeof(S)]{};

@@ -12,11 +12,11 @@
 namespace skerry {
 
 /// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
-/// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If another thread has changed
-/// the root meanwhile, the join is repeated from the new root. Parents are thus always smaller than their children, so
-/// the root of a set is its smallest index, whatever the number of threads and the order of the joins. Parent and stamp
-/// share one word, and no other data depend on when a word is written, so relaxed memory order suffices. Threads must
-/// synchronise before they read the final sets.
+/// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If the exchange fails,
+/// because another thread has attached that root meanwhile, the join is repeated from the new root. Parents are thus
+/// always smaller than their children, so the root of a set is its smallest index, whatever the number of threads and
+/// the order of the joins. Relaxed memory order suffices: parent and stamp share one word, and no thread reads other
+/// data because of a word that it has seen. Threads must synchronise before they read the final sets.
 struct SharedUnionFind {
     /// Each word has two halves of 32 bits. The upper half is the stamp: the value of `now` when the word was written.
     /// A word with an earlier stamp counts as empty. The lower half is the value that the member describes.

@@ -17,7 +17,8 @@ namespace skerry {
 /// w_n in the anchor, and d_n dampers that act on it.
 struct AnchorMass {
     Real inverse = 0;  // sum of w_n^2 / m_n; 0 if the anchor is not on a deformable body [1/kg]
-    // Sum of d_n w_n^2 / m_n: `inverse` if each node divides its mass equally among its dampers [1/kg].
+    // Sum of d_n w_n^2 / m_n: the value of `inverse` for one damper if each node divides its mass equally among its
+    // dampers [1/kg].
     Real divided = 0;
     // Number of dampers that act on the body of the anchor, if it is rigid or implicit; else 0. The mass of the body is
     // divided among them.

@@ -30,8 +30,8 @@ struct StepEvaluation {
     Index element_in_frame = no_index;
 };
 
-/// Checks all bodies one after the other, in endless rounds. The progress is part of the state, but only `steps` is
-/// hashed: rejected attempts at a step advance the other members, which changes no result.
+/// Checks all bodies one after the other, in endless rounds. The progress is part of the state. Only `steps` is hashed,
+/// because attempts at a step that are then rejected also advance the other members. This changes no result.
 struct StepWatch {
     /// Value of `step` for a body that is not checked in this round, because it is asleep or unstrained (its shape does
     /// not change), because another rank checks it, or because forget() was called.
@@ -58,7 +58,7 @@ struct StepWatch {
         steps = 0;
         body = kept = 0;
         evaluation = {};
-        first_piece.clear();  // elements that become implicit change the numbers of pieces
+        first_piece.clear();  // elements that became implicit in the last round change the numbers of pieces
     }
     /// Cancels the check of the body in row `row`, because the caller has computed its stable step, or the body has
     /// changed since its shape was stored.

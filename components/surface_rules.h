@@ -1,5 +1,5 @@
-// Surface properties that override those of bodies and colliders: for pairs of materials, and for parts of the surface
-// of a body (docs/methods/friction.md 4).
+// Surface properties of pairs of materials, and of parts of the surface of a body. They override the properties of
+// bodies and colliders (docs/methods/friction.md 4).
 #pragma once
 
 #include <algorithm>

@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Boundary triangles, counter-clockwise as seen from outside. A vertex or edge belongs to several triangles; the
-/// triangle with the lowest row owns it. A search compares two triangles by the features that they own, and so finds
-/// each pair of features once.
+/// Boundary triangles with their corners counter-clockwise as seen from outside. A vertex or edge belongs to several
+/// triangles; the triangle with the lowest row owns it. A search compares only those edges and vertices of two
+/// triangles that the triangles own, and so finds each pair of features once.
 ///
 /// A round body has one degenerate triangle, its core. For a sphere or cylinder all three corners are the centre. For a
 /// capsule corner 0 is one end of the axis, and corners 1 and 2 are the other end; its side from corner 0 to corner 1,
@@ -55,7 +55,7 @@ struct EdgeTable {
 
 struct VertexTable {
     Column<Index> node;  // row of NodeTable
-    // Range of rows of SurfaceTables::vertex_triangle that lists the triangles around the vertex.
+    // The triangles around the vertex are rows triangle_begin .. triangle_end - 1 of SurfaceTables::vertex_triangle.
     Column<Index> triangle_begin;
     Column<Index> triangle_end;
 

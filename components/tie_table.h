@@ -26,7 +26,7 @@ struct TieTable {
     Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world
     Column<Range> nodes;         // range of rows of the columns `node` to `broken`
     Column<Real> break_force;    // force at which a node breaks off; may be infinite [N]
-    Column<Real> largest_force;  // largest force of the tie in any step so far [N]
+    Column<Real> largest_force;  // largest total force of the tie in a step so far [N]
     Column<Real> step;           // time for which the forces of the tie acted in the last step; 0 before the first [s]
 
     // The next columns have one row per tied node. Nodes have their numbers in the meshes of the bodies.
@@ -100,7 +100,7 @@ inline void TieTable::erase_keys_of(std::size_t tie) {
 /// contains these rows after those of the contacts.
 struct TieRowTable {
     Column<Index> tie;   // row of TieTable
-    Column<Index> node;  // row of the columns `node` to `broken` of TieTable
+    Column<Index> node;  // index of the tied node in the columns `node` to `broken` of TieTable
     Column<Stencil> stencil;
     Column<Vec3> point;    // position of the tied node at the start of the step [m]
     Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]

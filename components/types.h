@@ -10,7 +10,7 @@
 namespace skerry {
 
 using Real = double;                                                     // number type of all quantities
-inline constexpr Real infinity = std::numeric_limits<Real>::infinity();  // as a bound it means: no bound
+inline constexpr Real infinity = std::numeric_limits<Real>::infinity();  // as a limit it means: no limit
 using Vec3 = Eigen::Matrix<Real, 3, 1>;  // 24 bytes, no padding: a Column<Vec3> is a flat array of reals
 using Mat3 = Eigen::Matrix<Real, 3, 3>;  // rotation, inertia, stress or strain
 

@@ -18,7 +18,8 @@ struct UnionFind {
     /// side by side.
     struct Node {
         Index parent;
-        // Number of calls of start() when the node was written; parent and number are only valid if it equals `now`.
+        // Value of `now` when the node was written. `parent` and `number` are valid only if it equals the present
+        // `now`.
         std::uint32_t stamp;
         Index number;  // number of the set, stored at its root; no_index until it is assigned
     };

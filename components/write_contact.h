@@ -31,7 +31,7 @@ inline void write_contact(const ContactRow& row, std::size_t c, ContactTable& co
     contacts.state[c] = ContactState::open;
 }
 
-/// Appends `row`. `impulse`: start value of the impulse for the solver [N s].
+/// Appends `row`. `impulse`: impulse with which the solver starts [N s].
 inline void append_row(const ContactRow& row, const Vec3& impulse, ContactTable& contacts) {
     const std::size_t c = contacts.size();
     contacts.resize(c + 1);

@@ -23,7 +23,8 @@ std::unique_ptr<Executor> make_serial_executor();
 /// Stores the exception of the block or stage with the lowest number.
 class FirstError {
 public:
-    /// Stores the current exception, thrown by block or stage `number`. Call it inside a catch block.
+    /// Stores the current exception, thrown by block or stage `number`, unless one with a lower number is stored. Call
+    /// it inside a catch block.
     void keep(Index number) noexcept {
         std::lock_guard lock(mutex_);
         if (any() && number_ <= number) return;

@@ -39,7 +39,7 @@ public:
 };
 
 /// Makes an executor of the given backend; `automatic` selects the first backend of this build. If `workers` is 0, the
-/// number of workers is the size of the caller's arena (tbb), OMP_NUM_THREADS (openmp), or the number of cores
+/// number of workers is the size of the caller's arena (tbb), omp_get_max_threads() (openmp), or the number of cores
 /// (threads). A tbb executor with 0 workers runs its tasks in the arena of the caller. Throws std::invalid_argument if
 /// this build lacks the backend or if `workers` is negative.
 std::unique_ptr<Executor> make_executor(Backend backend, int workers);

@@ -29,8 +29,8 @@ struct Bind {
     X operator()(const Binder& binder, auto&... objects) const { return X::bind(binder, objects...); }
 };
 
-// Stage argument: the functor `Take` converts the objects to the value that is passed to the stage function. Its
-// accesses are declared when the stage is added to the graph. Its value is computed again whenever the stage starts.
+// Stage argument: the functor `Take` converts the objects to the value that is passed to the stage function. The
+// accesses are declared when the stage is added to the graph. The value is computed again whenever the stage starts.
 template <class Take, class... Objects>
 struct Argument {
     using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;

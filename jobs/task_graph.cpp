@@ -16,7 +16,8 @@ bool conflict(const AccessList& a, const AccessList& b) {
     });
 }
 
-/// True if one of two stages may write an object that the other stage declares as a value.
+/// True if a stage with the accesses `written` writes an object that a stage with the accesses `taken` declares as a
+/// value.
 bool breaks_value(const AccessList& written, const AccessList& taken) {
     return std::ranges::any_of(written, [&](const Access& access) {
         return access.writes() && std::ranges::any_of(taken, [&](const Access& other) {

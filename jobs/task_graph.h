@@ -152,7 +152,7 @@ public:
     std::span<const StageStats> stats() const { return stats_; }
     void reset_stats();
 
-    /// The smallest set of edges that implies all dependencies, sorted by first stage, then by second stage. Stages are
+    /// The smallest set of edges that implies all dependencies, sorted by Edge::from, then by Edge::to. Stages are
     /// numbered in list order.
     std::span<const Edge> edges() const { return edges_; }
     /// The graph as text in the dot language of Graphviz, with a box around the stages of each phase.

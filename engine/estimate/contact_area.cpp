@@ -44,12 +44,12 @@ Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_
     return sum;
 }
 
-/// Sums over the contacts of a body with one other object: of the force, and of the force times curvature and edge
-/// length.
+/// Sums over the contacts of a body with one other object: of the force, of force times curvature, and of force times
+/// edge length.
 struct Patch {
     Real force = 0;                // [N]
     Real curvature = 0, edge = 0;  // [N/m, N m]
-    Real sharpest = 0;             // largest tilt of a contact [rad]
+    Real sharpest = 0;             // largest tilt_at() of a contact [rad]
 };
 
 }  // namespace
@@ -111,7 +111,7 @@ Real ContactArea::curvature_at(const World& world, const Contact& contact, bool 
     return mean_of_nodes(contact, first, surface.curvature);
 }
 
-/// Tilt of the surface of a body at a contact; 0 for colliders and round bodies [rad].
+/// Surface::tilt interpolated at a contact point; 0 for colliders and round bodies [rad].
 Real ContactArea::tilt_at(const World& world, const Contact& contact, bool first) {
     const Model& model = WorldAccess::state_of(world).model;
     const BodyHandle body = first ? contact.first : contact.second;

@@ -14,8 +14,8 @@ class ContactArea {
 public:
     /// Takes a sample from the contacts of the last step.
     void sample(const World& world);
-    /// Sets ErrorEstimate::contact_radius and contact_edge of the bodies with a contact at which a surface is curved
-    /// and none has a sharp edge.
+    /// Sets ErrorEstimate::contact_radius and contact_edge of the bodies with a contact area at which one of the two
+    /// surfaces is curved and neither has a sharp edge.
     void add_to(std::vector<ErrorEstimate>& bodies) const;
 
 private:

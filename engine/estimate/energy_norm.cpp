@@ -22,8 +22,8 @@ Vec6 entries_of(const Mat3& symmetric) {
 EnergyNorm::EnergyNorm(const MaterialConstants& material, bool splits)
     : is_anisotropic_(material.model == MaterialModel::orthotropic) {
     const Real mu = material.shear_modulus, lambda = material.lame_lambda;
-    // If some elements carry only one part of the stress, every stress is divided into these parts. Otherwise it is
-    // divided into deviator and mean stress, because the stiffness 2 mu and the bulk modulus are positive for all
+    // If some elements carry only one of the parts of ElementPart, every stress is divided into these parts. Otherwise
+    // it is divided into deviator and mean stress, whose stiffnesses, 2 mu and the bulk modulus, are positive for all
     // Poisson ratios.
     const MaterialConstants volumetric = part_of(material, ElementPart::volume);
     const Real bulk = lambda + 2 * mu / 3, modulus = splits ? volumetric.lame_lambda : bulk;

@@ -18,13 +18,14 @@ public:
     /// `splits`: true if some elements have only one part of the stress (ElementPart).
     EnergyNorm(const MaterialConstants& material, bool splits);
 
-    /// Coordinates of one part of a stress. `turn`: rotation of the material axes, used for anisotropic materials.
+    /// Coordinates of a stress that belongs to `part` of the material law. `turn`: rotation of the material axes, used
+    /// for anisotropic materials.
     StressCoordinates of(const Mat3& stress, ElementPart part, const Mat3& turn) const;
 
 private:
     bool is_anisotropic_;
-    // Square roots of the compliances of the deviatoric and the volumetric part [Pa^(-1/2)]; ratio of the pressure that
-    // the volumetric part carries to the trace of the stress.
+    // Square roots of the compliances of the deviatoric and of the volumetric part [Pa^(-1/2)]. `pressure_`: pressure
+    // of the volumetric part of a whole stress, divided by the trace of the stress.
     Real of_shear_ = 0, of_volume_ = 0, pressure_ = 0;
     // Inverse of the Cholesky factor of the stiffness of an anisotropic material, for the entries xx, yy, zz, xy, yz,
     // zx.

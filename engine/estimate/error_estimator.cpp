@@ -84,7 +84,7 @@ private:
 /// Intervals between samples. The unit is one step in which something moved. All samples together take less than 2 % of
 /// the computing time of the steps.
 struct Pace {
-    // number of steps before the first sample of all meshes, which then takes 0.6 % of their computing time
+    // number of steps before the first sample of all meshes, which takes 0.6 % of the computing time of these steps
     std::uint64_t first_mesh;
     std::uint64_t mesh;    // number of steps between samples of meshes
     std::uint64_t motion;  // number of steps between samples of motion and contacts
@@ -104,8 +104,8 @@ struct ErrorEstimator::Impl {
     ContactError contact;
     ContactArea area;
     std::vector<ErrorEstimate> bodies;
-    // Numbers of steps in which something had moved: at the start, at the last sample of meshes, and at the last sample
-    // of motion and contacts.
+    // Values of steps_of(): when the estimator was made, at the last sample of meshes, and at the last sample of motion
+    // and contacts.
     std::uint64_t start = 0, mesh_steps = 0, motion_steps = 0;
     bool has_moved = false;  // true if something moved between the last two samples of motion
 

@@ -27,8 +27,8 @@ namespace {
 /// Recovered stress at the corners of the tetrahedra of a body.
 ///
 /// At edges and corners of the surface and at interfaces of materials, World::node_stress extrapolates, or mixes
-/// materials. There this class uses the mean stress of the tetrahedra of one material around the node instead, weighted
-/// by volume, which is more robust in thin walls.
+/// materials. At these nodes this class uses the volume-weighted mean stress of the tetrahedra of one material around
+/// the node, because this mean is more robust in thin walls.
 class CornerStress {
 public:
     CornerStress(const BodyRecord& record, const NodeFields& nodes, std::span<const Mat3> of_tetrahedra,
@@ -63,7 +63,7 @@ public:
 
 private:
     struct Sum {
-        Mat3 stress = Mat3::Zero();  // times the volume
+        Mat3 stress = Mat3::Zero();  // sum of stress times volume
         Real volume = 0;
     };
 
@@ -96,10 +96,11 @@ Real share_of(Real error, Real energy) {
 /// Sums over the elements and tetrahedra of a body.
 ///
 /// Smoothed elements solve for a stress s that is constant in each element and for displacements with the strain e in
-/// the tetrahedra. Both are stationary for the functional of Hellinger and Reissner, so its error is of second order:
-/// the missing energy is 2 (S - e) : (s* - s) + (s* - s) : (S* - S), summed over the body, with the exact stress s* and
-/// the strains S and S* of both stresses. The recovered stress is used in place of the exact one. For linear tetrahedra
-/// S = e, and the missing energy is the squared norm of the error.
+/// the tetrahedra. Both are stationary for the functional of Hellinger and Reissner, so the error of the functional is
+/// of second order: the missing energy is the integral of 2 (S - e) : (s* - s) + (s* - s) : (S* - S) over the body,
+/// with the exact stress s* and the strains S and S* that the material law gives for s and s*. The recovered stress is
+/// used in place of the exact one. For linear tetrahedra S = e, and the missing energy is the squared norm of the
+/// error.
 class MeshErrorSum {
 public:
     MeshErrorSum(const Model& model, std::size_t body)
@@ -145,8 +146,8 @@ private:
     }
     bool is_anisotropic(std::size_t block) const { return constants_of(block).model == MaterialModel::orthotropic; }
 
-    /// Finds for each tetrahedron a block of elements that cover it and carry the whole stress or its shear part. Finds
-    /// the materials some elements of which carry only the volumetric part.
+    /// Writes block_: for each tetrahedron, a block with an element that covers it and carries the whole stress or its
+    /// shear part. Writes splits_: true for materials of which some elements carry only the volumetric part.
     void find_blocks(std::size_t tetrahedron_count) {
         block_.resize(tetrahedron_count);
         splits_.resize(norms_.size());
@@ -167,8 +168,9 @@ private:
         return *norm;
     }
 
-    /// Adds to error_.stored the energy of the elements minus the energy of the mean stresses of the tetrahedra. The
-    /// caller adds the second energy again. Returns false if the elements are not strained.
+    /// Adds to error_.stored the energy of the elements minus the energy of the mean stresses of the tetrahedra.
+    /// compare() later adds the energy of the tetrahedra (error_.energy). Returns false if the elements are not
+    /// strained.
     bool add_elements(std::span<const Mat3> stress) {
         constexpr Real smallest_strain = 1e-9;  // smaller mean strains are rounding errors, for example in free fall
         struct Mean {
@@ -254,8 +256,8 @@ private:
     }
 
     /// At the centroids of the tetrahedra their stress and the recovered stress both have errors of second order in the
-    /// length of the edges. The error of the largest recovered stress is estimated by the root mean square of the
-    /// differences of both stresses there, over the tetrahedra around the node of the largest stress.
+    /// length of the edges. The error of the largest recovered stress is estimated by the difference of the two
+    /// stresses at the centroids: its root mean square over the tetrahedra around the node of the largest stress.
     void find_peak(std::span<const Mat3> of_tetrahedra, const CornerStress& recovered) {
         Index peak = 0;
         for (std::size_t n = 0; n < error_.nodes.stress.size(); ++n) {
@@ -308,7 +310,8 @@ private:
     std::vector<std::optional<EnergyNorm>> norms_;  // by material
     std::vector<bool> splits_;                      // by material
     std::vector<std::size_t> block_;                // by tetrahedron
-    // Energy of the recovered stress, and its product with the strain of the displacements [J].
+    // `recovered_`: integral of the recovered stress times its strain. `mixed_`: integral of the recovered stress times
+    // the strain of the displacements [J].
     Real recovered_ = 0, mixed_ = 0;
     MeshError error_;
 };

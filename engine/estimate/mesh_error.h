@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Comparison of the stress of a deformable body with the stress that is recovered at its nodes. Energies are twice the
-/// elastic energy, for small strain from the rest shape.
+/// Comparison of the stress of a deformable body with the stress that is recovered at its nodes. All energies are
+/// integrals of stress : strain, twice the elastic energy, with the strain that Hooke's law gives for the stress.
 struct MeshError {
     std::vector<Real> volume;  // volumes of the tetrahedra at rest [m^3]
     // Energies of the stress of each tetrahedron, and of its difference from the recovered stress [J].

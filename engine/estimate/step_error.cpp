@@ -31,7 +31,7 @@ struct StepError::Interval {
 
 namespace {
 
-// Smaller displacements of a body count as rest. Unit: the mean edge length of the body.
+// Displacements of a body below this multiple of its mean edge length count as rest.
 constexpr Real least_motion = 1e-6;
 
 const Model& model_of(const World& world) {
@@ -103,8 +103,8 @@ Vec3 spin_momentum(const World& world, BodyHandle body) {
 }
 
 /// Rate of the error of the rotation of a free rigid body [rad/s]: the size of the second-order terms of the splitting
-/// into rotations about the principal axes (docs/methods/rigid_bodies.md), with the angular velocity w and its free
-/// change: h^2/24 |w| |dw/dt|.
+/// into rotations about the principal axes (docs/methods/rigid_bodies.md), h^2/24 |w| |dw/dt| with the angular velocity
+/// w, which changes without torques.
 Real tumbling_error(const World& world, BodyHandle body, Real step) {
     const Model& model = model_of(world);
     const auto r = static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin);
@@ -182,9 +182,10 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
     return motion;
 }
 
-/// Symplectic Euler treats given velocities as those of half a step before the start. This gives rigid motion a
-/// position error of half a step times the change of the velocity since the start. In a collision, an error of the
-/// position also becomes an error of the direction in which the body continues.
+/// Estimates the position error of the rigid motion of a body [m]. Symplectic Euler treats given velocities as those of
+/// half a step before the start. This gives rigid motion a position error of half a step times the change of the
+/// velocity since the start. In a collision, an error of the position also becomes an error of the direction in which
+/// the body continues.
 Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
                             Motion& motion) {
     if (motion.holder) return 0;
@@ -192,8 +193,8 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
     const Twist &now = frame.motion, &start = motion.start_velocity;
     const bool is_rigid = motion.deformation.displacement.empty();
-    // Free rotation has errors of second order only. A rigid body is therefore measured by its angular momentum, which
-    // only torques change.
+    // The angular velocity of a rigid body changes even without torques. Such changes cause only errors of second order
+    // and must not count, so the change of the angular momentum is used.
     const Real turned =
         is_rigid ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)
                  : (now.angular_velocity - start.angular_velocity).norm();

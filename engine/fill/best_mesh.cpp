@@ -82,7 +82,7 @@ void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMe
 }
 
 /// Removes knots from the surface within the tolerance. thin_knots checks the distance to the old surface at few points
-/// only. If a full check then finds a larger distance, the thinning is repeated with a smaller tolerance.
+/// only. If a full check then finds a distance above `tolerance`, thin_knots runs again with a smaller tolerance.
 ThinnedSurface thinned_within_tolerance(const SurfaceMesh& surface, Real tolerance) {
     constexpr int tries = 4;
     constexpr Real less = 0.75;

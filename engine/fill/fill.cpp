@@ -23,15 +23,15 @@ constexpr Real default_edge = 0.05;
 constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
 // fTetWild may use this share of the tolerance. The rest is left for the removal of needles and caps.
 constexpr Real envelope_share = 0.5;
-// Netgen also fills the surface of fTetWild's mesh. Its mesh must have at least this fraction of fTetWild's number of
-// tetrahedra. With fewer it would be coarser than wanted.
+// Netgen also fills the surface of fTetWild's mesh. Netgen's mesh must have at least this fraction of the number of
+// tetrahedra of fTetWild's mesh. With fewer it would be coarser than wanted.
 constexpr Real least_count = 0.7;
 // Largest number of cubes of the wanted edge in the bounding box. More tetrahedra do not fit the memory of a computer.
 constexpr Real most_cells = 1e9;
 
 const char* const install_ftetwild = "install the Python package of fTetWild: pip install wildmeshing==0.4.1";
 
-/// A surface to fill. `names` and `first_triangle`, by file: its name, and the index of its first triangle.
+/// A surface to fill, joined from files. For each file: its name, and the index in `surface` of its first triangle.
 struct GivenSurface {
     SurfaceMesh surface;
     std::vector<std::string> names;
@@ -102,7 +102,8 @@ private:
         require(settings_.limits.bytes > 0, "memory limit", settings_.limits.bytes, "a number of bytes above 0");
     }
 
-    /// Refuses an edge length that does not fit the size of the surface, for example because it is in another unit.
+    /// Refuses an edge length that does not fit the size of the surface, for example because the length is given in
+    /// another unit.
     void check_edge() const {
         if (!settings_.edge) return;
         const Real edge = *settings_.edge, diagonal = box_diagonal(surface());
@@ -138,7 +139,8 @@ private:
         return explicit_body(mesh, {.material = settings_.material}).world.stable_step();
     }
 
-    /// Fills the surface as it is, or without needles and caps. Returns false if Netgen fails.
+    /// Fills the surface by Netgen, either as it is or without needles and caps, which are thin triangles. Returns
+    /// false if Netgen makes no mesh.
     bool fill_exactly() {
         BestMesh best =
             best_mesh_of(whole_surface(shells_), settings_.edge.value_or(mean_edge(surface())), result_.tolerance, 0);
@@ -213,7 +215,8 @@ private:
 
     bool crossing() const { return result_.surface.find(SurfaceFaultKind::shell_crossings) != nullptr; }
 
-    /// Makes a set of the faces of each shell if there are regions, cavities or several files.
+    /// Makes a mesh set of the faces of each shell, named after its file or number, if there are regions, cavities or
+    /// several files.
     void name_shells() {
         const std::size_t shells = shells_.shell.size(), files = given_.names.size();
         if (crossing()) {

@@ -70,7 +70,8 @@ std::vector<std::string> read_notes(const std::filesystem::path& cache) {
     return notes;
 }
 
-/// Writes the notes, then the mesh, so that a mesh is never without its notes. Returns false if this is not possible.
+/// Writes the notes, then the mesh, so that a mesh is never without its notes. Returns false if a file cannot be
+/// written.
 bool write_cache(const std::filesystem::path& cache, const FilledMesh& filled) {
     const std::filesystem::path beside = notes_file(cache);
     std::error_code failure;

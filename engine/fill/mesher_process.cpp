@@ -78,7 +78,8 @@ bool take_number(std::string_view& text, auto& number) {
     return error == std::errc{};
 }
 
-/// Reads the text that a mesher wrote. Returns nothing if the text is not a mesh, or if a tetrahedron is inverted.
+/// Reads the text that a mesher wrote. Returns nothing if the text is not a mesh, or if a tetrahedron stays inverted
+/// after turn_inverted().
 std::optional<Mesh> read_mesh(std::FILE* in) {
     const std::string all = text_of(in);
     std::string_view text = all;

@@ -27,7 +27,8 @@ struct MesherResult {
     bool stopped = false;   // true if a limit ended the mesher
     bool crashed = false;   // true if a signal ended the mesher
 
-    /// True if the same call may find a mesh on another day or on another machine.
+    /// True if the same call may find a mesh later or on another machine, because the mesher was missing, hit a limit
+    /// or crashed.
     bool may_change() const { return missing || stopped || crashed; }
 };
 

@@ -44,7 +44,7 @@ struct EnumNames<LiveAction> {
     }};
 };
 
-/// A command. Members that its text does not give keep their defaults and are not used by its action.
+/// A command. Members that are not in its JSON text keep their defaults; the action does not use them.
 struct LiveCommand {
     LiveAction action = LiveAction::pause;
     std::uint64_t client = 0;  // number of the browser
@@ -54,7 +54,7 @@ struct LiveCommand {
     FrameContent content = FrameContent::motion;   // least FrameContent that contains the fields shown by the browser
     std::uint64_t body_number = 0;                 // index of the body in LiveEncoder::bodies of this browser
     BodyHandle body{};                             // handle of this body, set by LiveHub::receive
-    Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]
+    Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // pulled point and its target [m]
 };
 
 /// Reads a command such as {"do":"rate","value":0.5}. Throws SceneError that names the member at fault.

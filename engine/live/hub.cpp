@@ -36,7 +36,8 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     Client& client = clients_.emplace_back();
     client.number = ++last_client_;
     client.link = &link;
-    client.snapshot = last_snapshot_;  // skips earlier snapshots, which may be outdated
+    // the first frame then comes from a new snapshot, because the last one may be outdated
+    client.snapshot = last_snapshot_;
     if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
     note_busy();

@@ -31,12 +31,14 @@ public:
 };
 
 /// Each browser has its own thread, which encodes and sends frames. So a browser that hangs does not delay the others.
-/// A browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are not encoded:
-/// each frame of a stream contains the differences from the last frame sent in it.
+/// A browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are not encoded. A
+/// stream is a sequence of frames for one browser. Its first frame is complete; each later one contains the differences
+/// from the frame sent before it.
 class LiveHub {
 public:
     static constexpr std::size_t most_clients = 4;
-    // Largest number of commands that wait, from all browsers together, and of messages that wait for one browser.
+    // Largest number of waiting commands of all browsers together. Also the largest number of messages that wait for
+    // one browser.
     static constexpr std::size_t most_waiting = 1000;
 
     LiveHub() = default;
@@ -47,12 +49,12 @@ public:
     // The next functions are for the threads of the connections.
 
     /// Adds a browser and returns its number. After close() returns 0. If most_clients browsers are connected, sends
-    /// the browser a problem and returns 0. `link` must live until leave().
+    /// the new one an error message and returns 0. `link` must live until leave().
     std::uint64_t join(LiveLink& link);
     /// Removes a browser after waiting for its thread. If the browser pulls a body, adds a command that ends the pull.
     /// Otherwise adds no command, because a command ends a call of advance and so changes the length of the steps.
     void leave(std::uint64_t client);
-    /// Takes a message of a browser. A message that is no command is answered with a problem.
+    /// Takes a message of a browser. A message that is no command is answered with an error message.
     void receive(std::uint64_t client, std::string_view text);
 
     // The next functions are for the thread of the simulation.
@@ -76,8 +78,8 @@ public:
         bool frame = false;                           // at least one browser waits for a frame
         FrameContent content = FrameContent::motion;  // least content with the fields that these browsers show
     };
-    /// Finds out whether browsers wait for a frame, and the fields that they show. Counts a missed frame for each other
-    /// browser that has not seen the present state, because it is still busy with earlier frames.
+    /// Finds out whether browsers wait for a frame, and the fields that they show. A browser that has not acknowledged
+    /// earlier frames does not wait; one dropped frame is counted for it if the world has changed since its last frame.
     Wish wish();
     /// Returns a snapshot to be overwritten: one that no browser reads any more, or a new one.
     std::shared_ptr<Snapshot> free_snapshot();

@@ -19,7 +19,8 @@ constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
 // spent on snapshots
 constexpr int snapshot_pause = 4;
 constexpr Real longest_wait = 0.02;  // longest wait in due(), and in sync() while paused [s]
-constexpr Real longest_lag = 0.1;    // lag behind the wall clock that the simulation makes up for [s]
+// largest lag behind the wall clock that is made up for; the pace restarts at a larger one [s]
+constexpr Real longest_lag = 0.1;
 constexpr Real fastest_rate = 1000;  // largest simulated time per wall time
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real speed_interval = 0.5;  // wall time over which the speed is measured [s]
@@ -280,7 +281,7 @@ std::vector<LiveRun::PlottedProbe> LiveRun::tracked_probes(World& world) const {
     return probes;
 }
 
-/// Adds the forces of the last call of advance to the sums of the probes.
+/// Adds the forces of the last call of advance to the force sums of the probes.
 void LiveRun::sample_probes(const World& world) {
     if (!(world.time() > sampled_time_)) return;
     sampled_time_ = world.time();

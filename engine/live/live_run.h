@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-/// The public functions are those of LiveView with the same names (skerry/live.h).
+/// Carries out the functions of LiveView that have the same names (skerry/live.h).
 class LiveRun {
 public:
     LiveRun(World& world, const LiveSettings& settings);
@@ -57,11 +57,12 @@ private:
     std::vector<PlottedProbe> probes_;
     World start_;  // state for a reset
     LiveState state_;
-    Vec3 gravity_ = Vec3::Zero();           // last gravity of the world that was not zero [m/s^2]
-    std::map<std::uint64_t, Pull> pulls_;   // by number of the browser
-    std::atomic<bool> step_asked_ = false;  // true from the command `step` to the end of due() or to the next sync()
-    bool failed_ = false;                   // paused by fail()
-    std::string reset_refusal_;             // reason why resets are refused; empty if they are allowed
+    Vec3 gravity_ = Vec3::Zero();          // last gravity of the world that was not zero [m/s^2]
+    std::map<std::uint64_t, Pull> pulls_;  // by number of the browser
+    // true from the command `step` until due() returns, or until the next call of sync()
+    std::atomic<bool> step_asked_ = false;
+    bool failed_ = false;        // paused by fail()
+    std::string reset_refusal_;  // reason why resets are refused; empty if they are allowed
     std::atomic<std::uint64_t> resets_ = 0;
 
     SnapshotTaker taker_;

@@ -84,7 +84,7 @@ bool LiveEncoder::is_outgrown(const Snapshot& snapshot) const {
 
 /// Returns the 99th percentile of the positive finite values in `values_` as the upper end of a legend, so that few
 /// extreme values do not stretch the legend. For up to 100 values this is the largest. Returns 0 if there are none.
-/// Reorders `values_` and removes all other values.
+/// Reorders `values_`, and removes values that are not positive or not finite.
 Real LiveEncoder::usual() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;

@@ -13,7 +13,7 @@
 
 namespace skerry {
 
-/// Values that the user switches.
+/// Controls of the page that the user can change.
 struct LiveState {
     bool playing = true;
     Real rate = 1;        // simulated time per wall time; 0: as fast as possible
@@ -28,7 +28,7 @@ struct LivePlot {
     std::vector<SeriesColumn> columns;
 };
 
-/// Data of a run that do not change until it is reset.
+/// Data of a run that a browser gets in the first message of a stream.
 struct LiveRunInfo {
     std::string title;
     Vec3 gravity = Vec3::Zero();  // [m/s^2]

@@ -17,7 +17,7 @@ namespace skerry {
 struct Snapshot {
     Frame frame;  // its spans and pointers refer to the copies below
 
-    std::uint64_t number = 0;                                // position in the sequence of all snapshots, from 1
+    std::uint64_t number = 0;                                // consecutive number among all snapshots, from 1
     std::uint64_t run = 0;                                   // number of the run; LiveHub::begin_run adds 1
     std::uint64_t version = 0;                               // number of the shown state, see LiveHub::mark_changed
     std::vector<std::vector<Real>> probes;                   // values by probe and column

@@ -1,4 +1,4 @@
-// Table of named materials. Every value has a source. Materials are left out if a value has none.
+// Table of named materials. Every value has a source; materials with a value of unknown source are left out.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -200,7 +200,7 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
                    "modulus and exponent of the same sign, not zero");
         twice_shear += modulus * exponent;
     }
-    // With a positive bulk modulus, Poisson's ratio is between -1 and 0.5 for any shear modulus.
+    // Here the shear modulus is positive. With a positive bulk modulus, Poisson's ratio is then between -1 and 0.5.
     if (!(bulk_modulus > 0))
         refuse("material", "bulk_modulus", std::to_string(bulk_modulus) + " Pa", "a modulus > 0 (Pa)");
     const Real shear = twice_shear / 2;

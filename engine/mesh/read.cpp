@@ -99,10 +99,10 @@ bool any_overlap(const Mesh& mesh) {
     return false;
 }
 
-/// Reverses the orientation of the inverted tetrahedra of a mesh whose node numbers are valid, unless they would then
-/// overlap other tetrahedra. Some programs list the nodes of all or some tetrahedra in the opposite order. In another
-/// kind of faulty file, a node lies in a wrong place: tetrahedra at this node are inverted, too, but share each face
-/// with a tetrahedron on its other side. The latter tetrahedra are left as they are.
+/// Reverses the orientation of the inverted tetrahedra of a mesh whose node numbers are valid, unless one of them would
+/// then overlap another tetrahedron. Some programs list the nodes of all or some tetrahedra in the opposite order. In
+/// another kind of faulty file, a node lies in a wrong place: tetrahedra at this node are inverted, too, but do not
+/// overlap their neighbours across faces. Turning them would cause overlaps, so they stay inverted.
 void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)

@@ -40,8 +40,9 @@ public:
         for (const Index n : corners) on_face_[static_cast<std::size_t>(n)] = true;
         found_.insert(found_.end(), midpoints.begin(), midpoints.end());
     }
-    /// Adds the midpoint of an edge if both ends are in the set, but not both on faces of the set: such a midpoint is
-    /// added with its face, or the edge only connects two faces of the set. Call add_face for all faces before.
+    /// Adds the midpoint of an edge if both ends are in the set, unless both are nodes of faces in the set: add_face()
+    /// adds the midpoints of edges of these faces, and any other edge between such nodes only connects two faces. Call
+    /// add_face() for all faces first.
     void add_edge(std::size_t a, std::size_t b, Index midpoint) {
         if (in_set_[a] && in_set_[b] && !(on_face_[a] && on_face_[b])) found_.push_back(midpoint);
     }

@@ -27,8 +27,8 @@ void tidy(MeshSet& set);
 void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
                  std::span<const std::array<Index, 4>> tetrahedra, std::span<const std::array<Index, 3>> surface = {});
 
-/// Gives the faces of sets that are boundary triangles the orientation of the boundary (outward), and drops triangles
-/// that are not faces of the tetrahedra. Returns the number of dropped triangles.
+/// Orients those faces of the sets that are boundary triangles outward, and drops triangles that are not faces of the
+/// tetrahedra. Returns the number of dropped triangles.
 std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::map<std::string, MeshSet>& sets);
 
 /// Returns the text on the expected set for an error message: that one of the sets "a", "b" is expected, or that there

@@ -48,8 +48,8 @@ void write_members(std::ostream& out, const std::map<std::string, MeshSet>& sets
     }
 }
 
-/// Writes each set of tetrahedra as element data with the value 1, because the format allows one physical group per
-/// tetrahedron, and this is its label.
+/// Writes each set of tetrahedra as element data with the value 1, because the format allows only one physical group
+/// per tetrahedron, which already holds the label.
 void write_tetrahedra(std::ostream& out, const std::map<std::string, MeshSet>& sets) {
     for (const auto& [name, set] : sets) {
         if (set.tetrahedra.empty()) continue;

@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Root mean square distance of the first body of a joint from its centre of mass, for the length of the drawn axis
-/// [m]. The principal moments add up to twice the integral of the squared distance.
+/// Radius of gyration of the first body of a joint about its centre of mass: half the length of the drawn axis [m]. The
+/// principal moments add up to twice the integral of the squared distance.
 Real gyration_radius(const Model& model, JointHandle joint) {
     const auto first =
         static_cast<std::size_t>(model.joints.first[static_cast<std::size_t>(model.row(joint, "frame"))]);

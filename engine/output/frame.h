@@ -16,8 +16,9 @@
 
 namespace skerry {
 
-/// State of a body in one frame of output. The spans refer to arrays of the World and are valid until the world
-/// changes. Values that the FrameContent of collect_frame() does not include are empty.
+/// State of a body in one frame of output. After collect_frame() the spans refer to arrays of the World and are valid
+/// until the world changes; a Snapshot lets them refer to copies. Values that the FrameContent of collect_frame() does
+/// not include are empty.
 struct BodyFrame {
     BodyHandle handle;
     std::string name;
@@ -31,7 +32,7 @@ struct BodyFrame {
     std::vector<Mat3> stress, strain;            // values by cell: Cauchy stress [Pa] and Green strain
     std::vector<Real> plastic_strain;            // equivalent plastic strain by cell; empty if nothing yields
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
-    std::vector<Real> node_mesh_error{};         // values by node: mean of mesh_error() over the tetrahedra around it
+    std::vector<Real> node_mesh_error{};         // values by node: mean of mesh_error() over the adjacent tetrahedra
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
     // Stretch of the fibres, and nominal stress along them [Pa], by cell. A cell without fibres has the stretch 1 and
@@ -73,8 +74,9 @@ struct LineFrame {
     // Present positions [m]. Cable and spring: the anchors. Tie: the nodes that have not broken off. Hinge and slider:
     // the two ends of a displayed piece of the axis. Other joints: one point.
     std::vector<Vec3> points{};
-    // Force at each point [N]. Cable: tension of the segment that starts at the point. Spring: force, positive in
-    // tension. Tie: norm of the force on the node. Joint: norm of the force on the first body.
+    // Force at each point [N]. Cable: tension of the segment that starts at the point (at the last point: of the last
+    // segment). Spring: force, positive in tension. Tie: norm of the force on the node. Joint: norm of the force on the
+    // first body.
     std::vector<Real> force{};
 
     /// True if lines connect consecutive points.

@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// JSON document that keeps the order of its keys. A document that was read has the order of its file, a generated
-/// schema that of the tables that define the keys. Numbers that are not finite become null.
+/// JSON document that keeps the order of its keys. A document that was read keeps the order of the file. A generated
+/// schema has the order of the tables that define its keys. Numbers that are not finite become null.
 using Json = nlohmann::ordered_json;
 
 /// A key of a JSON object, and its value.

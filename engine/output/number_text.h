@@ -29,7 +29,8 @@ inline std::string count_text(double count) {
 }
 
 /// Formats a value with an SI prefix from nano to giga, so that one to three digits precede the decimal point:
-/// (0.00031, "s") gives "310 us". Values below 1e-9 get no prefix, values from 1e12 on get more digits.
+/// (0.00031, "s") gives "310 us". Values below 1e-9 get no prefix; values from 1e12 on get more digits before the
+/// point.
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
         double factor;
@@ -50,15 +51,15 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    // Number of minutes, hours or days from which the duration is given in this unit. Shorter durations are given in
-    // seconds.
+    // Least number of minutes, hours or days for which this unit is used. A shorter duration is given in the next
+    // smaller unit.
     constexpr double enough = 2;
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_text(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_text(seconds) + " s" : with_unit(seconds, "s");
 }
 
-/// Formats a hash as 0x and 16 digits.
+/// Formats a hash as 0x and 16 hexadecimal digits.
 inline std::string hash_text(std::uint64_t hash) {
     char text[24];
     std::snprintf(text, sizeof text, "0x%016" PRIx64, hash);

@@ -23,8 +23,8 @@ struct RunStart {
 };
 
 /// One output of a run. All functions may throw. If the constructor or open() throws, the run does not start. If
-/// another function throws, only this output ends and the run continues. The constructor must not create files, because
-/// the run may still be refused.
+/// sample(), add_frame() or close() throws, only this output ends. The run continues unless all of its outputs have
+/// ended. The constructor must not create files, because the run may still be refused.
 class Writer {
 public:
     virtual ~Writer() = default;
@@ -58,8 +58,8 @@ std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Sc
 /// Output of a film. For a resumed run the film begins at the checkpoint. Throws SceneError unless the extension of the
 /// file is .usd or .usdc.
 std::unique_ptr<Writer> usd_film(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max);
-/// Output of the state at the end of the run as glTF. Throws SceneError unless the extension of the file is .glb.
-/// Also throws if glTF is not built in.
+/// Output of a glTF file with the state at the end of the run. Throws SceneError unless the extension of the file is
+/// .glb. Also throws if glTF is not built in.
 std::unique_ptr<Writer> gltf_state(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max);
 /// Output of a trace of the activities of all threads, for Perfetto.
 std::unique_ptr<Writer> thread_trace(const std::filesystem::path& file);

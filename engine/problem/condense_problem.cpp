@@ -58,8 +58,8 @@ std::string freedom_text(const MassParts& parts, Index part, Index place) {
 }
 
 MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass) {
-    // Tolerance for rounding in an assembled matrix, which should be symmetric. A matrix that is really unsymmetric
-    // exceeds the tolerance by far.
+    // Largest asymmetry of an entry M_ij by rounding, relative to sqrt(M_ii M_jj). A matrix that is really unsymmetric
+    // exceeds it by far.
     constexpr Real rounding = 1e-9;
     const SparseMatrix difference = mass - SparseMatrix(mass.transpose());
     const Eigen::VectorXd diagonal = mass.diagonal();
@@ -82,7 +82,7 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
             return {std::to_string(diagonal[i]) + " as the diagonal entry of " + freedom_text(parts, part, i),
                     expected};
     factors.compute(mass);
-    // A pivot of the factorisation that is as small as rounding errors indicates a singular matrix.
+    // The matrix counts as singular if a pivot is within rounding errors of its diagonal entry.
     constexpr Real rounding = 1e-14;
     const Eigen::VectorXd in_order = factors.permutationP() * diagonal;
     bool definite = factors.info() == Eigen::Success;
@@ -95,7 +95,7 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
 void condense_part(const MassParts& parts, Index part, const Factors& factors,
                    const std::vector<MatrixEntry>& directions, const std::vector<Real>& force,
                    std::vector<BlockPart>& blocks, ContactProblem& problem) {
-    std::vector<Index> contact;  // numbers of the contacts that move this part of M, ascending
+    std::vector<Index> contact;  // numbers of the contacts that act on this part of M, ascending
     for (const MatrixEntry& e : directions) contact.push_back(e.column / 3);
     std::sort(contact.begin(), contact.end());
     contact.erase(std::unique(contact.begin(), contact.end()), contact.end());
@@ -115,8 +115,8 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
     constexpr Index batch = 32;
     for (Index begin = 0; begin < count; begin += batch) {
         const Index end = std::min(count, begin + batch);
-        // The dense matrix gets its size before the assignment. With automatic resizing disabled, Eigen would otherwise
-        // set its entries to zero before it has the size of the sparse matrix.
+        // The dense matrix is created with its final size. With EIGEN_NO_AUTOMATIC_RESIZING, Eigen would first clear
+        // the empty matrix and then resize it, which leaves entries uninitialised.
         Eigen::MatrixXd pushed(parts.size[part], 3 * (end - begin));
         pushed = h.middleCols(3 * begin, 3 * (end - begin));
         const Eigen::MatrixXd moved = factors.solve(pushed);

@@ -23,11 +23,13 @@ struct VelocityRow {
         Vec3 along;
     };
     struct OnFrame {
-        Index frame;       // row of RigidBodyTable
-        Vec3 along, turn;  // coefficients of velocity [1] and angular velocity [m]; for rows of rotations: 0 and [1]
+        Index frame;  // row of RigidBodyTable
+        // coefficients of velocity [1] and angular velocity [m]; a row for a rotation has along = 0 and turn in [1]
+        Vec3 along, turn;
     };
-    std::vector<OnNode> nodes;    // coefficients of node velocities; on implicit bodies, relative to the frame
-    std::vector<OnFrame> frames;  // coefficients for rigid and implicit bodies as a whole
+    // coefficients of node velocities; in implicit bodies these are relative to the frame of the body
+    std::vector<OnNode> nodes;
+    std::vector<OnFrame> frames;  // coefficients of the rigid motion of rigid and implicit bodies
 
     void add_frame(Index frame, const Vec3& along, const Vec3& turn) {
         for (OnFrame& of : frames)
@@ -40,9 +42,9 @@ struct VelocityRow {
     }
 };
 
-/// The quantity of an equation that stays that of the step when contact impulses change. `velocity`: its velocity; its
-/// impulse in the step is known. `held`: its velocity too, but its impulse in the step is not known. `impulse`: its
-/// impulse.
+/// The quantity of an equation that keeps its value from the step when the contact impulses change. `velocity`: the
+/// velocity; the impulse in the step is known. `held`: the velocity; the impulse in the step is not known. `impulse`:
+/// the impulse.
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
@@ -56,9 +58,9 @@ class Mobilities {
 public:
     explicit Mobilities(const RegionInputs& inputs) : inputs_(inputs) {}
 
-    /// Adds `weight` times the velocity of a node along a direction to a row. `acts_at`: point of the node's body at
-    /// which the row acts; nullptr: the node itself. `beside`: additional lever arm, already multiplied by the weight
-    /// [m].
+    /// Adds a term to a row: `weight` times the velocity component of a node in the direction `along`. `acts_at`: point
+    /// of the node's body at which the row acts; nullptr: the node itself. `beside`: additional lever arm, already
+    /// multiplied by the weight [m].
     void add_node(VelocityRow& row, Index node, Real weight, const Vec3& along, const Vec3* acts_at,
                   const Vec3& beside) const {
         const auto n = static_cast<std::size_t>(node);
@@ -86,7 +88,7 @@ public:
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
             // Lever arm from the core of a round body to the contact point. beside_core() already contains the sum of
-            // the weights, so the arm is added with the first core node only.
+            // the weights, so the arm is added only with the first node of the body in the stencil.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& of) { return of.frame == frame; });
@@ -125,7 +127,7 @@ public:
     }
 
 private:
-    /// Velocity change of node `a` due to the impulse `impulse` on node `b`, without the motion of frames.
+    /// Velocity change of node `a` due to the impulse `impulse` on node `b`, without the rigid motion of their body.
     Vec3 of_nodes(Index a, Index b, const Vec3& impulse) const {
         const Index frame = inputs_.rigid.nodes.row(a);
         if (frame != no_index) {
@@ -191,8 +193,8 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
     }
 }
 
-/// Adds the rows of welds and slides. A weld has three rows, along the world axes. A slide has one row along the
-/// impulse vector of the step, so the impulse of this row is 1.
+/// Adds the rows of welds and slides. A weld has three rows, along the world axes. A slide has one row. Its direction
+/// is the whole impulse vector of the step, not a unit vector, so its impulse is 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -204,8 +206,8 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
     }
 }
 
-/// Adds a row for each point of a cable. The direction of the row is the impulse vector on the point, which its two
-/// segments exert, so the impulse of the row is 1.
+/// Adds a row for each point of a cable. The direction of the row is the impulse vector that the two adjacent segments
+/// exert on the point, not a unit vector, so the impulse of the row is 1.
 void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                 std::vector<EquationRow>& rows) {
     Vec3 last = Vec3::Zero();
@@ -216,7 +218,7 @@ void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mo
     }
 }
 
-/// Adds the three rows of a ball tie. Each is the sum of one velocity component over all points of the tie.
+/// Adds the three rows of a ball tie. Row k sums velocity component k over all points of the tie.
 void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                std::vector<EquationRow>& rows) {
     for (Index k = 0; k < 3; ++k) {
@@ -235,9 +237,9 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
 /// angle of 3e-4 rad: the solver's tolerance lets redundant joints drift apart by smaller angles.
 constexpr Real negligible_part = 1e-7;
 
-/// A contact counts as immovable if elimination reduces its inverse mass along the normal to less than this fraction:
-/// the square of an angle of 1e-3 rad (see negligible_part). The value may exceed `negligible_part`, because immovable
-/// contacts keep their impulses of the step in q.
+/// A contact counts as immovable if elimination reduces its inverse mass along the normal to less than this fraction of
+/// its value before. The fraction is the square of an angle of 1e-3 rad (see negligible_part). The value may exceed
+/// `negligible_part`, because immovable contacts keep their impulses of the step in q.
 constexpr Real immovable_part = 1e-6;
 
 /// Pseudoinverse of a symmetric positive semidefinite matrix. Rows may have different units, so the matrix is first
@@ -270,7 +272,7 @@ std::vector<Real> normal_mobilities(const ContactProblem& problem) {
 /// Equations and contacts that act on the same coupled masses.
 struct Group {
     std::vector<EquationRow*> kept_velocity, kept_impulse;
-    std::vector<Index> contacts;  // indices in ContactProblem
+    std::vector<Index> contacts;  // indices of the contacts in ContactProblem
 };
 
 Eigen::MatrixXd couplings(const Mobilities& mobilities, const std::vector<VelocityRow>& rows,
@@ -294,9 +296,9 @@ Eigen::VectorXd impulses_of(const std::vector<EquationRow*>& equations) {
     return impulses;
 }
 
-/// Finds the impulses of the held rows from the condition that the velocities of these rows stay as before the solve.
-/// `E`: velocity change of each equation per unit impulse of each equation. `rate_by_others`: velocity changes of all
-/// equations due to contacts and known impulses.
+/// Finds the impulses of the rows of the kind Keeps::held from the condition that the velocities of these rows stay as
+/// before the solve. `E`: velocity change of each equation per unit impulse of each equation. `rate_by_others`:
+/// velocity changes of all equations due to contacts and known impulses.
 void find_held_impulses(const Eigen::MatrixXd& E, const Eigen::VectorXd& rate_by_others,
                         const std::vector<EquationRow*>& equations) {
     std::vector<Index> held;
@@ -330,7 +332,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     sets.start(inputs.inverse_mass.size());
     for (const EquationRow& of : rows)
         mobilities.for_each_leader(of.row, [&](Index leader) { sets.join(mobilities.leader(of.row), leader); });
-    std::map<Index, Group> groups;  // by root in `sets`
+    std::map<Index, Group> groups;  // indexed by the root of the set in `sets`
     for (EquationRow& of : rows) {
         Group& group = groups[sets.root(mobilities.leader(of.row))];
         (of.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&of);
@@ -375,7 +377,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
                            C.transpose() * r + couplings(mobilities, of_equations, group.kept_impulse) * known_impulses,
                            group.kept_velocity);
         const Eigen::MatrixXd product = C * (inverse_of(E) * C.transpose());
-        const Eigen::MatrixXd less = (product + product.transpose()) / 2;  // bitwise symmetric
+        const Eigen::MatrixXd less = (product + product.transpose()) / 2;  // symmetric to the last bit, as W must be
         const Eigen::VectorXd more = known * known_impulses + C * impulses_of(group.kept_velocity) + less * r;
         for (std::size_t i = 0; i < group.contacts.size(); ++i) {
             const auto row = static_cast<Index>(3 * i);

@@ -23,7 +23,8 @@ struct HeldDirection {
 struct StepEquations {
     const JointBlockTable& joints;
     const TieRowTable& tie_rows;
-    std::span<const TieKind> tie_kind;  // column of TieTable; empty: no ties, and `tie_rows` is ignored
+    // kind of each tie (column of TieTable); empty: no ties, and `tie_rows` is ignored
+    std::span<const TieKind> tie_kind;
     const CableBlockTable& cables;
     std::vector<HeldDirection> held{};
 };
@@ -37,10 +38,10 @@ struct StepEquations {
 ///
 /// so that the velocities of the eliminated rows stay those of the step, and r* solves the new problem if it solved the
 /// problem of the step. Rows of slides, of cables, and of motors, limits and passive forces of joint axes are not
-/// eliminated: they keep their impulses of the step. `contact`: row of each contact of the problem in `inputs`.
+/// eliminated: they keep their impulses of the step. `contact`: for each contact of the problem, its row in `inputs`.
 /// `impulse`: r*, in the contact frames. Returns the numbers of the contacts that impulses can no longer move along
-/// their normals. The blocks of these contacts are set to zero, and q of the other contacts includes the impulses of
-/// these contacts in the step. Returns nothing if no row acts on a contact.
+/// their normals. The blocks of these contacts are set to zero, and q of the other contacts includes the effect of the
+/// impulses that these contacts had in the step. Returns nothing if no row acts on a contact.
 std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equations, const RegionInputs& inputs,
                                                       std::span<const Index> contact, std::span<const Vec3> impulse,
                                                       ContactProblem& problem);

@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Returns the errors of `reaction`. With Friction::pyramid the errors refer to the friction pyramid, where each
-/// tangential component has the bound mu r_n of its own.
+/// Returns the errors of `reaction`. With Friction::pyramid the errors refer to the friction pyramid, where mu r_n
+/// bounds each tangential component separately.
 ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction);
 
 }  // namespace skerry

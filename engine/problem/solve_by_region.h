@@ -1,5 +1,5 @@
-// Solves a contact problem region by region. The method can be one of the library for problems with 3 x 3 blocks, or
-// another one for comparison in profiling.
+// Solves a contact problem region by region. The caller gives the method: one of the library, or another one that a
+// profiling program compares with it.
 #pragma once
 
 #include <functional>

@@ -77,7 +77,7 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
 }
 
 /// For a cylinder, sets the contact point of each contact of the problem, relative to the centre of mass. Does nothing
-/// for other bodies. `rows` are the rows of the contacts of the problem in the tables of the step.
+/// for other bodies. rows[i]: row of contact i in the tables of the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();
@@ -93,7 +93,8 @@ void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, R
     }
 }
 
-/// Returns the deformation of the implicit bodies that contacts touch.
+/// Returns the response of implicit bodies by deformation: velocity changes of the nodes that contacts touch, per
+/// impulse on these nodes.
 std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
     std::vector<StrainedPoints> bodies;
     if (!contacts.implicit.any()) return bodies;
@@ -110,7 +111,7 @@ std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// Erases contacts from a problem. `contacts`: ascending.
+/// Erases the contacts with the given numbers from a problem. `contacts`: ascending numbers.
 void leave_out(std::span<const Index> contacts, StepProblem& problem) {
     std::vector<Index> kept;
     for (Index i = 0; i < problem.problem.contacts(); ++i)

@@ -144,7 +144,7 @@ void put_in_place(const std::filesystem::path& file, World world, Scene& scene) 
         if (world.name(colliders[c]) != scene.world.name(colliders_of_scene[c]))
             refuse_restart(file, "collider \"" + world.name(colliders[c]) + "\"",
                            "collider \"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
-    // Handles of the replaced world are not valid in the new world.
+    // Handles of the replaced world are not valid in the new world, so the probes get handles of the new world.
     for (Probe& probe : scene.probes)
         probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];
     const std::uint32_t number = bodies.empty() && colliders.empty() ? 0

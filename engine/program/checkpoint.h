@@ -22,7 +22,7 @@ struct RunMemory {
     long frame = 0;                        // number of the frame being simulated
     int sample = 0;                        // index of the next call of advance within the frame
     double seconds_wall = 0;
-    Real peak_kinetic_energy = 0;  // [J]
+    Real peak_kinetic_energy = 0;  // largest value at the end of a frame so far [J]
     Json probes = Json::array();
 };
 

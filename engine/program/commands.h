@@ -27,7 +27,7 @@ enum ExitCode : int {
     // the run reached its end, but its results cannot be trusted (WorldReport::distrust)
     exit_untrusted = 4,
 };
-// a run that a signal stopped ends with this exit code plus the number of the signal
+// If a signal stops a run, the exit code is this number plus the number of the signal.
 inline constexpr int exit_signal = 128;
 
 /// Content of one file of exported contact problems: either a whole step, or one contact region of a step.

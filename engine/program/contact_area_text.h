@@ -11,7 +11,7 @@
 namespace skerry {
 
 /// Returns one text for each body whose contact areas are too small for its mesh. Bodies are considered only if a probe
-/// of the scene measures the stress of the whole body, or forces on or by it.
+/// of the scene measures the stress of the whole body, forces on the body, or forces that it exerts.
 std::vector<std::string> contact_area_texts(const ScenePlan& plan, const World& world,
                                             std::span<const ErrorEstimate> errors);
 

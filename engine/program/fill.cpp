@@ -31,8 +31,8 @@ void check_outputs(const FillOptions& options) {
     if (!options.scene.empty()) require_writable_file(options.scene);
 }
 
-/// Returns a scene in which the body falls on a floor. The lowest point of the body starts half the height of the body
-/// above the floor.
+/// Returns a scene in which the body falls on a floor. At the start the gap between the body and the floor is half the
+/// height of the body, rounded up.
 Json starter_scene(const FillOptions& options, const MaterialSettings& given, const MeshReport& report) {
     const Real gravity = 9.81, height = report.upper.z() - report.lower.z(), fall = height / 2;
     const Real rounding = std::pow(10, std::ceil(std::log10(height)) - 3);

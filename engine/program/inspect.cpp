@@ -24,9 +24,10 @@ namespace skerry {
 
 namespace {
 
-// A problem is reported if the second smallest stable step of the bodies exceeds the smallest by this factor.
+// A problem is reported if the explicit bodies with the smallest stable step need steps that are shorter by more than
+// this factor than those of all other explicit bodies.
 constexpr Real expensive_step_ratio = 4;
-constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
+constexpr std::size_t longest_list = 300;  // a list of names in a message ends once it is this long [characters]
 
 /// Report on all bodies that have the same mesh, materials, elements and dynamics, and therefore the same stable step.
 struct BodyKindReport {
@@ -125,7 +126,7 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
-/// A scene in the state in which a run starts, and a report of the overlaps that the scene has as written.
+/// A scene in the state in which a run starts, and a report of the overlaps in the scene file, which a run may resolve.
 struct SceneStart {
     Scene scene;
     WorldReport as_written;  // report of a world in which the overlaps at the start are not resolved

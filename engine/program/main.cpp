@@ -478,7 +478,9 @@ int run_command_line(int argc, char** argv) {
 /// much memory, and the system would have to clear every page before it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    // Sizes in bytes. The C library adapts both limits by itself, but only after large blocks were freed.
+    // `largest_kept`: blocks below this size come from the heap. `most_kept`: free memory at the end of the heap up to
+    // this size stays in the process. The C library raises both limits [bytes] by itself only after large blocks were
+    // freed.
     constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);

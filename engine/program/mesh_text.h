@@ -18,7 +18,7 @@ Json mesh_json(const MeshReport& report);
 std::string labels_text(const MeshReport& report);
 /// Describes a set, such as "skin": 12 nodes, 20 faces. `count`: numbers of listed nodes, faces and tetrahedra.
 std::string set_text(const std::string& name, const std::array<std::size_t, 3>& count);
-/// Name of a body of the plan and file of its mesh, for example: body "ball" (mesh meshes/ball.msh).
+/// Returns the name of a body and the file of its mesh, for example: body "ball" (mesh meshes/ball.msh).
 std::string mesh_of_body_text(const ScenePlan& plan, std::size_t body);
 
 }  // namespace skerry

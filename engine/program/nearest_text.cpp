@@ -12,7 +12,7 @@ std::string nearest_text(const World& world) {
     const std::vector<BodyHandle> bodies = world.bodies();
     std::size_t nodes = 0;
     for (const BodyHandle body : bodies) nodes += world.positions(body).size();
-    // Largest number of pairs of a node and an object for which distances are computed; these take about a second.
+    // Largest product of the numbers of nodes and objects for which distances are computed; this takes about a second.
     // Larger scenes get an empty text.
     constexpr std::size_t most_tests = 10'000'000;
     if (nodes * (bodies.size() + world.colliders().size()) > most_tests) return {};

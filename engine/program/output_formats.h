@@ -17,7 +17,7 @@ struct OutputRequest {
     std::filesystem::path place;
     const Scene& scene;
     const RunOptions& options;
-    // Result of the run. When a writer is closed, it lacks only the entries of writers that are closed later.
+    // Result of the run. When a writer is closed, only the entries of writers that are closed later are missing here.
     const RunResult& result;
 };
 

@@ -25,8 +25,7 @@ struct RepairedMesh {
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
     // Number of nodes that were split because some of their tetrahedra were not connected by faces.
     std::size_t parted = 0;
-    // Reason why the mesh has the old tetrahedra although nodes were split; empty if it has new tetrahedra or is
-    // refused.
+    // If the result is the old mesh with split nodes: reason why its tetrahedra were not replaced. Otherwise empty.
     std::string kept;
     std::string refusal;  // reason why the mesh must not be written; otherwise empty
 };

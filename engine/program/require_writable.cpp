@@ -43,8 +43,8 @@ void require_writable_file(const std::filesystem::path& file) {
 void require_distinct(std::span<const NamedFile> files) {
     const auto place = [](const std::filesystem::path& file) {
         std::error_code error;
-        // weakly_canonical keeps a relative name relative if the file does not exist yet, so the name is made absolute
-        // before.
+        // If the file does not exist yet, weakly_canonical() keeps a relative name relative, so the name is first made
+        // absolute.
         const std::filesystem::path full = std::filesystem::absolute(file);
         const std::filesystem::path found = std::filesystem::weakly_canonical(full, error);
         return error ? full : found;
@@ -55,7 +55,8 @@ void require_distinct(std::span<const NamedFile> files) {
                 continue;
             std::error_code error;
             const std::filesystem::file_status found = std::filesystem::status(files[i].file, error);
-            if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) continue;  // a device
+            // a device such as /dev/null
+            if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) continue;
             refuse_in(files[i].file.string(), files[i].name, {}, "the same file as " + std::string(files[k].name),
                       "a different file", "choose another file name");
         }

@@ -268,7 +268,7 @@ struct RunBeginning {
     bool is_restart = false;
 };
 
-/// Builds the world of a scene, or takes it from a checkpoint, and plans the run. Only for rank 0.
+/// Builds the world of a scene, or takes it from a checkpoint, and plans the run. Called on rank 0 only.
 Scene begin_run(const RunOptions& options, const ScenePlan& plan, std::optional<Restart>& restart,
                 RunBeginning& beginning, RunResult& result) {
     SetupProgress setup(!options.quiet, plan);
@@ -327,7 +327,8 @@ RunStart run_start(const RunBeginning& beginning, const World& world) {
             .row_step = plan.even() ? 0 : plan.probe_step};
 }
 
-/// Collective. Copies `beginning` and the values that `result` has at the beginning from rank 0 to all other ranks.
+/// Collective. Copies from rank 0 to all other ranks: `beginning`, and the status, time of restart and wall time so far
+/// in `result`.
 void share_beginning(const RunRanks& ranks, RunBeginning& beginning, RunResult& result) {
     const SignalGuard guard;  // else a signal would kill ranks that wait here while rank 0 finds an equilibrium
     const RunPlan& plan = beginning.plan;
@@ -374,7 +375,7 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     if (ranks.is_first())
         outputs.emplace(options, scene, run_start(beginning, world), result);
     else
-        plan = {};  // frees its meshes
+        plan = {};  // frees the meshes of the plan, which only rank 0 needs
     share_beginning(ranks, beginning, result);
     const RunPlan& run_plan = beginning.plan;
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), beginning.time);

@@ -23,7 +23,8 @@ std::filesystem::path place_of(const OutputFormat& format, const RunOptions& opt
 /// Throws SceneError unless all outputs can be written and no file is used twice. Returns all files that the user has
 /// named, for reading or for writing.
 std::vector<NamedFile> check_places(const RunOptions& options) {
-    // The checkpoint file may be the file from which the run resumes.
+    // The checkpoint file may be the file from which the run resumes. It is then listed only once, because
+    // require_distinct() refuses equal files.
     std::error_code error;
     const bool same = std::filesystem::equivalent(options.restart, options.checkpoint, error);
     std::vector<NamedFile> files{{"the scene", options.scene},

@@ -12,8 +12,8 @@ namespace skerry {
 /// left to simulate, or if there are too many frames.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if the duration of a resumed run was changed from `planned` seconds, which end within this frame, and the frame
-/// has another length in `run_plan`. The checkpoint may then lie in the shortened frame.
+/// True if the earlier end of a resumed run, at `planned` seconds, lies within this frame, and the frame has another
+/// length in `run_plan`. The checkpoint may then lie within this frame, and not at its end.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

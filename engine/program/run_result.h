@@ -27,7 +27,7 @@ struct BrokenTie {
 struct RunResult {
     std::string scene;
     std::string scene_file;
-    std::string status = "ok";  // "ok", or a description of the error
+    std::string status = "ok";  // "ok", or the reason why the run stopped early or cannot be trusted
     bool distrusted = false;    // true if the run reached its end, but WorldReport::distrust() is not empty
     int stopped_by = 0;         // signal that stopped the run; 0 if there was none
     Settings settings;
@@ -45,7 +45,7 @@ struct RunResult {
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
-    std::vector<ErrorEstimate> errors;  // by body; cover only the part of the run after --restart
+    std::vector<ErrorEstimate> errors;  // by body; in a resumed run only for the part after the checkpoint
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
     std::vector<BrokenTie> broken_ties;

@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Ending of the name of a figure with this unit, for example _m_s for m/s.
+/// Returns the part of a figure's name that gives its unit, for example _m_s for m/s.
 std::string ending(std::string unit) {
     if (unit == "1") return {};
     std::ranges::replace_if(

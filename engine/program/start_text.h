@@ -26,8 +26,8 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
-/// Depth of an overlap, or depth by which surfaces are closer than their contact distance, above which a warning is
-/// given, as a fraction of the mean edge length.
+/// A warning is given if an overlap, or the depth by which surfaces are closer than their contact distance, exceeds
+/// this fraction of the mean edge length.
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
@@ -35,9 +35,9 @@ inline std::string into_shell_text(Real depth) {
            " closer than their contact distance: move the bodies apart, or reduce contact_distance";
 }
 
-/// Rotation of a collider per step above which a warning is given [rad]. Contacts assume that the surface moves
-/// straight within a step. At this rotation the position error of a surface point is 3 % of its distance from the axis
-/// (half the square of the rotation).
+/// A warning is given if a collider rotates by more than this angle in a step [rad]. Contacts assume that points of the
+/// surface move along straight lines within a step. At this rotation the position error of a surface point is 3 % of
+/// its distance from the axis (half the square of the rotation).
 inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {

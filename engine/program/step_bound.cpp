@@ -83,12 +83,14 @@ Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     return *last / *std::min_element(sorted.begin(), last + 1);
 }
 
-/// Computes the stable step of the mesh without each of the fractions `shares` of its worst tetrahedra. A fraction is
-/// removed in several rounds, because each removal changes the nodal masses and so the ranking of the remaining
-/// tetrahedra. `step`: step that each tetrahedron allows [s]. `order`: result of worst_first().
+/// Computes, for each fraction in `shares`, the stable step of the mesh without this fraction of its tetrahedra, the
+/// worst ones. A fraction is removed in several rounds, because each removal changes the nodal masses and so the
+/// ranking of the remaining tetrahedra. `step`: step that each tetrahedron allows [s]. `order`: result of
+/// worst_first().
 void find_steps_without(const Mesh& mesh, const StepCase& of, std::span<const Real> step, std::vector<Index> order,
                         StepBound& bound) {
-    // In a large mesh, removal of tetrahedra whose steps are more alike than this ratio gains little and is skipped.
+    // In a large mesh, a fraction of tetrahedra is not removed if the ratio of its longest to its shortest step is
+    // below this value: removal gains little.
     constexpr Real least_ratio = 1.5;
     const bool large = mesh.tetrahedra.size() > many;
     // number of rounds for each fraction; a large mesh takes seconds per round

@@ -14,17 +14,17 @@ namespace {
 
 // Number of steps below which a run needs no note. With a few hundred tetrahedra these steps take about a minute.
 constexpr double few_steps = 1e5;
-// Smallest factor by which the steps would be longer without the stiff bodies for a note to be given.
+// A note is given if the steps would be longer by more than this factor without the stiff bodies.
 constexpr Real much_longer = 4;
 // Longest step by default in a world of rigid and implicit bodies (Settings::step_size) [s].
 constexpr Real usual_step = 1.0 / 120;
 
 /// Stiff bodies: the explicit ones whose stable steps are less than `much_longer` times the shortest. Bodies with
-/// automatic dynamics are not among them.
+/// automatic dynamics are not among them, because the engine has chosen their dynamics.
 struct ShortSteps {
     std::size_t first = 0;  // index in ScenePlan::bodies of the body with the shortest step
     std::size_t count = 0;  // number of stiff bodies
-    // shortest stable step of the explicit bodies, and of all bodies that are not stiff [s]
+    // `step`: shortest stable step of the explicit bodies. `others`: shortest one of the bodies that are not stiff [s]
     Real step = infinity, others = infinity;
 };
 

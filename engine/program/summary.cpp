@@ -83,9 +83,9 @@ std::string balance_text(const WorldReport& r) {
                                                 : percent(r.momentum_error_share));
 }
 
-/// Returns the largest estimated errors of all bodies, with their names if there are several, for example "mesh about 3
-/// % of the motion (body 'arm') and about 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion
-/// (body 'ball')".
+/// Returns the largest estimated errors of all bodies. If there are several bodies, it names the body with each error,
+/// for example "mesh about 3 % of the motion (body 'arm') and about 12 % of the largest stress (body 'arm'), steps
+/// about 0.1 % of the motion (body 'ball')".
 std::string errors_text(const std::vector<ErrorEstimate>& errors) {
     constexpr Real least = 1e-4;  // smaller estimates are mostly rounding errors
     std::string text;
@@ -104,8 +104,8 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
         text += (text.empty() ? "" : between) + before + size + " of " + after +
                 (errors.size() > 1 ? " (body '" + worst->name + "')" : "");
     };
-    // `deflection` is relative to the displacements by deformation. Times `deformation`, their share of the motion, it
-    // is relative to the motion.
+    // `deflection` is an error relative to the displacements by deformation. `deformation` is the share of these
+    // displacements in the motion. Their product is the error relative to the motion.
     add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
     const bool is_rigid_motion = std::ranges::any_of(
         errors, [](const ErrorEstimate& of) { return of.deformation < 0.9 && !std::isnan(of.deflection); });

@@ -14,7 +14,7 @@ namespace {
 // A part is reported if it is stiffer in bending than the material by this factor. With smoothed elements in cubic
 // cells the factor is 1.08 to 1.17 for two layers of cells, and 1.3 to 1.5 for one layer.
 constexpr Real reported_stiffness = 1.25;
-// Cells of the recommended size exceed the bending stiffness of the material by this fraction.
+// With cells of the recommended size, the bending stiffness exceeds that of the material by this fraction.
 constexpr Real accepted_excess = 0.1;
 
 /// Elements of a body: tetrahedra by material, and the constants of these materials.
@@ -29,7 +29,7 @@ struct ElementsOfThinBody {
     }
 };
 
-/// Text of a coordinate of the place of a part. Values within rounding errors of 0 are printed as 0.
+/// Formats one coordinate of ThinPart::place. Values within rounding errors of 0 are printed as 0.
 std::string coordinate(Real value, const mesh::ThinPart& part) {
     constexpr Real rounding = 1e-6;  // coordinates below this fraction of the length of the part are rounding errors
     return short_text(std::abs(value) < rounding * part.length ? 0 : value);
@@ -77,7 +77,7 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
     if (parts.empty()) return locking_text(elements);
     const mesh::ThinPart& part = parts.front();
     const Real layers = std::round(part.layers);
-    // The excess of stiffness falls with the square of the size of the cells.
+    // The excess of stiffness is proportional to the square of the size of the cells.
     const Real finer = std::sqrt((part.stiffness - 1) / accepted_excess);
     return "a part " + with_unit(part.thickness, "m") + " thick and " + with_unit(part.length, "m") + " long around (" +
            coordinate(part.place.x(), part) + ", " + coordinate(part.place.y(), part) + ", " +

@@ -9,10 +9,10 @@
 
 namespace skerry {
 
-/// Describes the thin part of a body whose bending stiffness exceeds that of its material most, counts the other parts
-/// that are too stiff, and gives a remedy. If no thin part is too stiff, names a kind of elements of the body that
-/// lock, because the material is nearly incompressible. Otherwise returns an empty text. `boundary` lists the boundary
-/// triangles of the mesh.
+/// Describes the thin part of a body with the largest excess of bending stiffness over that of its material, counts the
+/// other parts that are too stiff, and gives a remedy. If no thin part is too stiff, names a kind of elements of the
+/// body that lock, because the material is nearly incompressible. Otherwise returns an empty text. `boundary` lists the
+/// boundary triangles of the mesh.
 std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of);
 
 }  // namespace skerry

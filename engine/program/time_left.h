@@ -28,7 +28,8 @@ private:
     double left_at_pace_since(const Sample& before) const;
 
     double end_;
-    std::vector<Sample> samples_;  // stored wall times grow by 5 % or more; the last entry is the present
+    // wall times grow by 5 % or more over two intervals; the last entry is the present state
+    std::vector<Sample> samples_;
 };
 
 }  // namespace skerry

@@ -92,7 +92,7 @@ public:
     /// From now on raise_at_exit() raises SystemExit in all threads but the calling one. Returns the number of calls
     /// that still run.
     static int end_calls();
-    /// Called after fork() in the child process, where only the calling thread exists.
+    /// Called after fork() in the child process, where only the calling thread exists, so that no other call runs.
     static void note_fork() { running = 0; }
 
 private:

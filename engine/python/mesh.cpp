@@ -34,7 +34,7 @@ Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::
     return mesh;
 }
 
-/// Returns a mesh, whose inverted tetrahedra are turned to positive volume, and notes about the turned ones.
+/// Returns a mesh in which inverted tetrahedra are turned to positive volume, and notes about these tetrahedra.
 nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
                    const nb::dict& sets) {
     Mesh mesh = same_mesh(nodes, tetrahedra, labels, {}, sets);

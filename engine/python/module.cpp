@@ -5,8 +5,8 @@ namespace skerry::python {
 
 namespace {
 
-/// Sets the Python exception skerry.SceneError. The hint is passed separately, because Python shows it as a note of the
-/// exception, so it is removed from the text.
+/// Sets the Python exception skerry.SceneError. Python shows the hint as a note of the exception, so the hint is
+/// removed from the text and passed separately.
 void raise(const SceneError& error) {
     const Complaint& parts = error.complaint();
     std::string text = error.what();

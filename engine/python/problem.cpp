@@ -38,7 +38,7 @@ ContactProblem new_problem(const std::string& name, const std::string& descripti
     problem.block.assign(matrices, matrices + block.shape(0));
     problem.q.assign(span_of(q).begin(), span_of(q).end());
     problem.mu.assign(mu.data(), mu.data() + mu.shape(0));
-    part_of(problem, {});  // throws SceneError if the arrays do not fit together
+    part_of(problem, {});  // called only for its check: throws SceneError if the arrays do not fit together
     return problem;
 }
 

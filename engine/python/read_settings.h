@@ -16,8 +16,9 @@
 namespace skerry::python {
 
 /// Reads the attributes of a Python object into a struct of settings. A missing attribute leaves the member unchanged.
-/// If a value has the wrong type, throws a SceneError that names the field, and the object by its attribute `of`, or
-/// else by its class. Handles of materials and bodies are not read: Python passes them as arguments.
+/// If a value has the wrong type, throws a SceneError that names the field and the object. The name of the object is
+/// its attribute `of`, or its class if it has none. Handles of materials and bodies are not read: Python passes them as
+/// arguments.
 void read(nb::handle from, Settings& to);
 void read(nb::handle from, MaterialSettings& to);
 void read(nb::handle from, OrthotropicModuli& to);
@@ -39,7 +40,7 @@ void read(nb::handle from, ProblemSettings& to);
 /// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.
 Shape read_shape(nb::handle from);
 
-/// The table with the given pairs (time, value), which Python passes for a value that changes over time.
+/// Returns the table of the pairs (time, value) that Python passes for a value that changes over time.
 TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs);
 
 /// The values of a struct by name, as Python values.

@@ -22,7 +22,7 @@ nb::object tuple_of_point(const std::optional<Vec3>& point) {
     return point ? nb::object(tuple_of(*point)) : nb::none();
 }
 
-/// Returns the name of the Python class of a probe, which is in skerry/_world/probes.py, and the members of the probe.
+/// Returns the members of a probe, preceded by the name of its Python class (see skerry/_world/probes.py).
 nb::tuple values_of(const RecordedProbe& probe) {
     nb::dict values;
     const char* kind = std::visit(

@@ -94,7 +94,7 @@ nb::dict dict_of(RolloutResult&& result) {
 nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector<Control>& controls,
                      std::vector<RecordedProbe> record, Real dt, std::size_t intervals, int threads, bool keep_worlds,
                      const nb::object& progress) {
-    std::deque<Use> used;  // a deque never moves its elements
+    std::deque<Use> used;  // a deque, because a Use cannot be moved
     std::vector<const World*> worlds;
     for (WorldObject* object : objects) {
         if (object) used.emplace_back(*object);

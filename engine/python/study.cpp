@@ -1,4 +1,4 @@
-// Studies, which estimate the errors of the results of a scene.
+// Python bindings of studies. A study estimates the errors of a scene's results.
 #include "skerry/study.h"
 
 #include <span>

@@ -15,7 +15,7 @@ namespace skerry::python {
 struct WorldObject {
     World world;
     std::atomic<unsigned long> user{0};  // PyThread_get_thread_ident() of the thread inside a call; 0: none
-    int depth = 0;                       // depth of nested calls of the thread `user`; 1 without nesting
+    int depth = 0;                       // number of nested calls of the thread `user`; 1 in an outermost call
     std::vector<BodyHandle> views{};     // for each living NumPy array that shows memory of the world: its body
 
     explicit WorldObject(World&& from);
@@ -55,7 +55,8 @@ private:
     [[noreturn]] static void raise_busy();
     [[noreturn]] static void raise_threads_lost();
 
-    // state of this process; changed with the GIL held
+    // threads_started: a world of this process may have started threads. threads_lost: fork() has left this process
+    // without them. Changed only with the GIL held.
     static inline bool threads_started = false, threads_lost = false;
 
     WorldObject& object_;

@@ -66,7 +66,7 @@ ControlledObject object_of(const RolloutControl& control) {
         control.what);
 }
 
-/// Start of the title of a control, which the name of its object follows, and number of values per interval.
+/// For each kind of control: the words before the object's name in its title, and the number of values per interval.
 struct ControlKind {
     const char* title;
     std::size_t count;

@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-/// Prescribes `value` over time for the quantity of a control, such as the rest length of a spring.
+/// Sets the quantity that a control drives, such as the rest length of a spring, to the time table `value`.
 void set_controlled_value(World& world, const ValueControl& control, const TimeTable& value);
 /// Gives the motor of a joint the speed, the position or the keys of `target`. Strength and largest speed of the motor
 /// stay unchanged; those of `target` are ignored.
@@ -29,13 +29,14 @@ std::string unit_of(const World& world, const SliderControl& control);
 /// Present time course of the quantity that a control sets. The control must not be a PoseControl. Throws SceneError
 /// for a pipe between two cavities and for a joint without motor.
 TimeTable course_of(const World& world, const SliderControl& control);
-/// Sets a target of a slider to a value at once; set_slider() lets it change gradually.
+/// Applies `value` of a slider to one of its targets at once; set_slider() changes the targets gradually.
 void start_target(World& world, const Slider& slider, const SliderTarget& target, Real value);
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.
 std::size_t number_count(const World& world, const RolloutControl& control);
-/// Returns count_in(world), which must be equal for all worlds. Throws SceneError that names the world if its number
-/// differs from that of the first world, or if count_in() throws a SceneError. `title`: name of the number in messages.
+/// Returns count_in(world), which must be equal for all worlds. If a world's number differs from that of the first
+/// world, or if count_in() throws SceneError, throws SceneError that names this world. `title`: name of the number in
+/// messages.
 std::size_t agreed_count(std::span<const World* const> worlds, const std::string& title,
                          FunctionRef<std::size_t(const World&)> count_in);
 /// Checks that the values of all controls are finite and have the right number, and that no object has two controls.

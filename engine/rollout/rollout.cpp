@@ -19,7 +19,7 @@ namespace skerry {
 
 namespace {
 
-// Time between two calls of RolloutSettings::go_on. A program must react to Ctrl-C within 50 ms.
+// Time between two calls of RolloutSettings::go_on. It lets a program react to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
 void check_settings(std::size_t world_count, const RolloutSettings& settings) {
@@ -47,7 +47,8 @@ WorldState& source_of(const World* world, std::size_t number, Real dt) {
         refuse("rollout", "dt", short_text(dt),
                "a longer time, because rounding would lose it in the sum with " + short_text(state.clock.time) +
                    " s, the time of world " + std::to_string(number));
-    // Fills the view of the contacts now, so that later reads by several threads write nothing.
+    // view_contacts() stores its result in the world. It is called now, so that later reads by several threads write
+    // nothing.
     view_contacts(state);
     return state;
 }
@@ -173,7 +174,8 @@ private:
     }
 
     const RolloutSettings& settings_;
-    // States of the given worlds, without pending changes, so that all threads may read them.
+    // States of the given worlds. They have no pending changes to complete, so that reads by several threads write
+    // nothing.
     std::vector<WorldState*> sources_;
     std::vector<std::size_t> number_count_;  // number of values of each control per interval
     RolloutResult result_;

@@ -14,7 +14,7 @@ namespace skerry {
 
 namespace {
 
-/// Unit of the value of a control.
+/// Unit of the quantity that a control sets. unit_of() excludes PoseControl; its operator exists only for std::visit().
 struct UnitOfControl {
     const Model& model;
 
@@ -43,7 +43,7 @@ private:
     std::size_t row(auto handle) const { return static_cast<std::size_t>(model.row(handle, "slider")); }
 };
 
-/// Kind of the target of a motor. Refuses a joint without motor.
+/// Kind of target of a motor: speed or position. Throws SceneError for a joint without motor.
 JointDrive motor_drive(const Model& model, JointHandle joint) {
     const JointDrive drive = model.joints.drive[static_cast<std::size_t>(model.row(joint, "slider"))];
     if (drive == JointDrive::none)
@@ -51,7 +51,8 @@ JointDrive motor_drive(const Model& model, JointHandle joint) {
     return drive;
 }
 
-/// Present time course of the quantity that a control sets.
+/// Present time course of the quantity that a control sets. course_of() excludes PoseControl; its operator exists only
+/// for std::visit().
 struct CourseOfControl {
     const Model& model;
 
@@ -88,7 +89,7 @@ Real value_of(const World& world, const Slider& slider, const SliderTarget& targ
     return slider.along.dot(now.position - target.start.position) + slider.about.dot(rotation_vector(turned));
 }
 
-/// Drives one target of a slider along the time course `course` of the value. The last value is held.
+/// Drives one target of a slider so that the value of the slider follows `course`. After its end the last value stays.
 struct FollowCourse {
     World& world;
     const Slider& slider;

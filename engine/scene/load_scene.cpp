@@ -92,7 +92,7 @@ BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const Body
     }
 }
 
-/// Gives the objects of a world the names of their entries in `plans`, which has the same order.
+/// Gives each object in `objects` the name of the entry with the same index in `plans`.
 template <class HandleType>
 void name_objects(World& world, const std::vector<HandleType>& objects, const auto& plans) {
     for (std::size_t i = 0; i < objects.size(); ++i) name_object(world, objects[i], plans[i].name);

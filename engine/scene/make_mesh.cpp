@@ -17,8 +17,8 @@ int refined(int cells, int refine) {
     return refine >= 0 ? cells << refine : cells >> -refine;
 }
 
-/// Number of elements across a round shape after refinement. Odd numbers are first rounded up to even ones, as the
-/// meshes of round shapes do.
+/// Number of elements across a round shape after refinement. Odd numbers are first rounded up to even ones, as in the
+/// functions that make round meshes.
 int refined_resolution(int resolution, int refine) {
     return refine == 0 ? resolution : refined(resolution + resolution % 2, refine);
 }
@@ -31,8 +31,9 @@ Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int 
     settings.tolerance = entry.tolerance.value_or(settings.tolerance);
     if (doublings > 0) {
         settings.edge = std::ldexp(*edge, doublings);
-        // Largest tolerance of a coarser filling, as a fraction of the diagonal of the bounding box. The tolerance
-        // grows with the square of the edge length, as the distance between flat triangles and a curved surface does.
+        // Largest tolerance of a coarser filling, as a fraction of the diagonal of the bounding box. The tolerance is
+        // scaled with the square of the edge length, because the distance between flat triangles and a curved surface
+        // grows with this square.
         constexpr Real most = 0.1;
         settings.tolerance =
             std::min(std::ldexp(settings.tolerance, 2 * doublings), std::max(settings.tolerance, most));
@@ -45,8 +46,8 @@ Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int 
     return mesh;
 }
 
-/// The mesh in a file, or of a filled surface, in the length unit of the file. If `refine` is negative, the mesh is
-/// made coarser by a new filling. Positive refinement is left to make_mesh().
+/// Returns the mesh of a file, or fills the surface of a file with tetrahedra, in the length unit of the file. If
+/// `refine` is negative, the mesh is made coarser by a new filling. Positive refinement is left to make_mesh().
 Mesh make_from_file(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
                     const SurfaceFilling& filling) {
     // The edge length is converted to the unit of the file. Surfaces are filled in this unit and scaled afterwards, so

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Number of times that a mesh can be made with edges twice as long; its numbers of cells must stay whole.
+/// Number of times that the edge length of a mesh can be doubled while its numbers of cells stay whole.
 int halvings_of(const MeshEntry& mesh) {
     const auto of_cells = [](int cells) { return std::countr_zero(static_cast<unsigned>(cells)); };
     if (mesh.box) {
@@ -26,8 +26,8 @@ int halvings_of(const MeshEntry& mesh) {
     return most_refinements;
 }
 
-/// Name and value of the numbers of cells of a mesh, for messages. Must not be called for surfaces and files, which
-/// have none.
+/// Key and value of the numbers of cells of a mesh, for messages. Must not be called for surfaces and files, which have
+/// no numbers of cells.
 std::string numbers_of(const MeshEntry& mesh) {
     if (mesh.box) {
         const std::array<int, 3>& cells = mesh.box->cells;
@@ -50,7 +50,7 @@ public:
         name_ = body_.name.empty() ? "body_" + std::to_string(number) : body_.name;
     }
 
-    /// Place in the scene of the first list of node numbers of the mesh; empty if there is none.
+    /// Place in the scene of the first entry that lists nodes of the mesh by number; empty if there is none.
     std::optional<Place> first_nodes() { return first(true); }
     /// Place in the scene of the first entry that uses node numbers, a set, a label or an array of the mesh file.
     std::optional<Place> first_of_file() { return first(false); }
@@ -111,8 +111,8 @@ private:
     std::optional<Place> found_;
 };
 
-/// Reason why a mesh cannot have the value `refine`; empty if it can. `parts`: uses of parts of the mesh of a body;
-/// nullptr for a collider. `rigid`: true for rigid bodies and colliders.
+/// Reason why the key `refine` of a mesh cannot have this value; empty if it can. `parts`: entries that name parts of
+/// the body's mesh; nullptr for a collider. `rigid`: true for rigid bodies and colliders.
 std::string why_not(const MeshEntry& mesh, int refine, bool rigid, NamedParts* parts) {
     if (std::abs(refine) > most_refinements)
         return "values are limited to " + std::to_string(most_refinements) + " refinements";

@@ -19,7 +19,7 @@ struct MeshLevels {
     Place place;                    // place of the mesh entry
     int refine = 0;                 // value of the key `refine` in the scene file
     int coarsest = 0, finest = 0;   // lowest and highest level that can be assigned
-    std::string why_not_coarser{};  // reason why no coarser level is possible
+    std::string why_not_coarser{};  // reason why no level below `coarsest` is possible
     std::string why_not_finer{};
 };
 

@@ -75,7 +75,7 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            // a list that contains the next open level already counts it as an item
+            // put() has already appended the next open level to its list, so size() counts it; the index is one less
             const std::size_t begun = i + 1 < open_.size() ? 1 : 0;
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);

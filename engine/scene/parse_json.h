@@ -9,7 +9,8 @@
 namespace skerry {
 
 /// Parses plain JSON (RFC 8259). Comments, trailing commas, duplicate keys and non-finite numbers are refused. Throws
-/// SceneError, for errors of syntax with line and column. `expected` describes the expected content in error messages.
+/// SceneError; for a syntax error its text names line and column. `expected` describes the expected content in error
+/// messages.
 Json parse_json(const std::string& text, const std::filesystem::path& file,
                 const std::string& expected = "a scene in JSON");
 

@@ -7,8 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// Finds the body or collider that exerts the measured force; a force on a collider is exerted by bodies only. Throws
-/// SceneError if none has the name, or if a body and a collider have it.
+/// Finds the body or collider `entry.by` that exerts the measured force. Only bodies exert forces on a collider. Throws
+/// SceneError if no object has this name, or if a body and a collider both have it.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
     const Place place = entry.place.key("by");
     const auto index_in = [&](const std::vector<std::string_view>& names) -> std::optional<std::size_t> {

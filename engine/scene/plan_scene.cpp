@@ -73,7 +73,8 @@ SurfacePlan plan_surface(const SurfaceEntry& entry, const PlannedMesh& mesh,
                                      .direction = entry.direction},
                         .place = entry.place};
     if (entry.set) {
-        // Listed nodes belong to the surface set also if they do not form a complete face.
+        // The nodes are set in addition to the faces, because a listed node belongs to the surface set even without a
+        // face whose nodes are all listed.
         const MeshSet& set = find_set(*entry.set, mesh, sets, entry.place.key("set"));
         surface.settings.nodes = set.nodes;
         surface.settings.faces = faces_of(set, mesh);
@@ -151,7 +152,7 @@ struct PlannedBodies {
     const SurfaceFilling& filling;
 };
 
-/// Returns the index of the body's mesh in plan.meshes. Bodies with equal entries for a mesh file share one mesh.
+/// Adds the mesh of a body to plan.meshes, unless an equal entry for a mesh file has added it. Returns its index.
 std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t next = plan.meshes.size();
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
@@ -172,7 +173,8 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     return next;
 }
 
-/// Returns the visual surface of an entry, bound to its mesh. Entries with equal file, scale and mesh share one.
+/// Returns the visual surface of an entry, bound to the mesh `of_plan`. Entries with equal file, scale and mesh share
+/// one surface. `of_plan`: index in ScenePlan::meshes.
 std::shared_ptr<const BoundVisual> plan_visual(const BodyEntry& entry, const std::string& name, std::size_t of_plan,
                                                PlannedBodies& so_far, ScenePlan& plan) {
     const VisualEntry& visual = *entry.visual;
@@ -267,7 +269,8 @@ PairPlan plan_pair(const PairEntry& entry, const ScenePlan& plan) {
             .place = entry.place};
 }
 
-/// Adds a pair of materials, and refuses a second entry for the same two. plan.materials must be complete.
+/// Adds a pair of materials. Throws SceneError for a second entry with the same two materials. plan.materials must be
+/// complete.
 void plan_pair_once(const PairEntry& entry, ScenePlan& plan) {
     const PairPlan pair = plan_pair(entry, plan);
     const auto is_same = [&](const PairPlan& other) {
@@ -321,7 +324,8 @@ std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan) {
 
 namespace {
 
-/// Adds a note if a joint does not start at the coordinate that its mimic prescribes.
+/// Adds a note if a joint does not start at the coordinate that its MimicEntry prescribes: ratio * (coordinate of the
+/// leader) + offset.
 void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
     const JointPlan& leader = plan.joints[leader_of(joint, plan)];
     const Real found = joint.settings.coordinate,

@@ -1,4 +1,5 @@
-// Records for each probe of a scene when it sticks and when it slides. A probe is a set of nodes of a body.
+// Records for each contact probe of a scene when it sticks and when it slides. Such a probe is a set of nodes of a
+// body.
 #pragma once
 
 #include <string>
@@ -30,8 +31,8 @@ public:
     /// time since the previous sample [s].
     void sample(const World& world, Real seconds);
     const std::vector<ProbeRecord>& records() const { return records_; }
-    /// Returns the state of the recorder for a checkpoint. go_on() restores this state in a recorder of the same
-    /// probes. It throws std::out_of_range if the probes differ, and an exception of nlohmann::json if the JSON is
+    /// saved() returns the state of the recorder for a checkpoint. go_on() restores it in a recorder of the same
+    /// probes; it throws std::out_of_range if the probes differ, and an exception of nlohmann::json if the JSON is
     /// invalid.
     Json saved() const;
     void go_on(const Json& saved);

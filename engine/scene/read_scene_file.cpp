@@ -10,8 +10,8 @@ namespace {
 /// Adds the content of a scene and of the files that it includes. `open` lists the files that are being read now, from
 /// the outermost to the innermost. The last of them has the content `json`.
 void read_into(SceneFile& scene, const Json& json, const Place& place, std::vector<std::filesystem::path>& open) {
-    // The content is evaluated twice. The first time, only the included files are found and read. The second time, the
-    // content is added to the content of the included files.
+    // The content is read twice: first to find the included files, and, after these were added to `scene`, again to add
+    // it to theirs. An outermost scene without included files is read once.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
     std::vector<std::string> names;

@@ -47,7 +47,7 @@ using SchemaBook = Json;
 template <class T>
 struct Value;
 
-/// A key that earlier versions had, and a hint that names its replacement.
+/// A key that was removed from the format, and a hint that names its replacement.
 struct Withdrawn {
     std::string_view key, instead;
 };

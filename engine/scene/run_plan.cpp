@@ -23,7 +23,7 @@ long RunPlan::frames() const {
 }
 
 double RunPlan::length_of(long frame) const {
-    // If only rounding shortens the last frame, it keeps its full length. A longer run of the scene then has a frame at
+    // If only rounding shortens the last frame, the frame keeps its full length, so that a longer run has a frame at
     // the same time.
     const double left = seconds - static_cast<double>(frame) * frame_step;
     return left > (1 - slack) * frame_step ? frame_step : left;
@@ -56,7 +56,8 @@ double RunPlan::longest_step(const World& world) const {
 }
 
 double RunPlan::steps(const World& world) const {
-    // Only the first thousand frames are counted. The later ones have about the same mean number of steps.
+    // Only the first thousand frames are counted, which limits the computing time. The later frames have about the same
+    // mean number of steps.
     const long counted = std::min(frames(), 1000L);
     const double longest = longest_step(world);
     double count = 0, time = 0;

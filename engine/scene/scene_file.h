@@ -43,7 +43,7 @@ struct SkittleMesh {
     Real height = 1;  // [m]
     int resolution = 4;
 };
-/// A mesh in a scene file. Exactly one of the members from `box` to `surface` is set.
+/// A mesh in a scene file. Exactly one of the members `box`, `ball`, ... up to `surface` is set.
 struct MeshEntry {
     std::optional<BoxMesh> box;
     std::optional<BallMesh> ball;
@@ -71,8 +71,8 @@ struct EnumNames<WorldAxis> {
     static constexpr std::array<std::pair<WorldAxis, std::string_view>, 3> table{
         {{WorldAxis::x, "x"}, {WorldAxis::y, "y"}, {WorldAxis::z, "z"}}};
 };
-/// A part of a body. At most one of `set`, `box` and `nodes` is given. The rules of the derived entries decide whether
-/// one is required.
+/// A part of a body. At most one of `set`, `box` and `nodes` is given. Whether one is required depends on the derived
+/// entry, such as PinEntry.
 struct PartEntry {
     std::optional<std::string> set;  // name of a set of the body
     std::optional<RestBox> box;
@@ -190,7 +190,7 @@ struct ColliderEntry {
 /// A point that is fixed to a body, to a collider, or to the world.
 struct AnchorEntry {
     std::optional<std::string> body, collider;
-    Vec3 point = Vec3::Zero();  // position in the own frame of the mesh or collider, or in the world [m]
+    Vec3 point = Vec3::Zero();  // in the own frame of the mesh or collider; without both, in the world [m]
     Place place;
 };
 /// Surface properties of contacts between two materials.
@@ -276,7 +276,7 @@ struct LoadEntry : PartEntry {
     LoadKind kind = LoadKind::force;
     std::optional<std::string> body;
     std::optional<Vec3> force, traction, acceleration, wind;  // [N, Pa, m/s^2, m/s]
-    std::optional<Real> rate;                                 // drag: rate of approach to the wind velocity [1/s]
+    std::optional<Real> rate;  // drag: rate at which the velocity approaches `wind` [1/s]
     std::optional<LoadArea> area;
     std::optional<TimeTable> scale;
 };
@@ -385,7 +385,7 @@ struct SceneFile {
 /// first. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
-/// Stands for the file name in messages about a scene that was read from a text.
+/// Used in place of the file name in messages about a scene that was read from a text.
 inline constexpr const char* scene_text_name = "scene";
 /// Reads the text of a scene file. Relative paths start at `folder`.
 SceneFile read_scene_text(const std::string& json, const std::filesystem::path& folder,

@@ -70,7 +70,7 @@ struct PairPlan {
 };
 struct AnchorPlan {
     std::optional<std::size_t> body{}, collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
-    // Position in the own frame of the mesh or collider; without body and collider: in the world [m].
+    // Position in the own frame of the body's mesh or of the collider; if both are empty: in the world [m].
     Vec3 point = Vec3::Zero();
 };
 struct JointPlan {
@@ -159,7 +159,7 @@ struct ScenePlan {
     Settings settings;
     Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
-    // one mesh for each mesh file, filled surface and entry of "bodies" without a file; copies of a body share the mesh
+    // meshes of the bodies; copies of a body share one mesh, and so do bodies that use a file with equal settings
     std::vector<PlannedMesh> meshes;
     std::vector<std::filesystem::path> mesh_files;  // for each mesh: file of the mesh or surface, or empty
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
@@ -194,19 +194,20 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
 std::vector<Vec3> positions_of(const BodyEntry& entry);
 
 /// nodes_of() returns the node numbers of a part of a body: in ascending order, or in the order of a list in the scene.
-/// faces_of() returns the faces that mesh::faces_of() finds, oriented as on the surface. Both throw SceneError if the
-/// entry names no part, an unknown set, or a part without nodes or faces. The message lists the existing sets.
+/// faces_of() returns faces oriented as on the surface: the listed ones, and those whose nodes or tetrahedron are
+/// listed. Both functions throw SceneError if the entry names no part, an unknown set, or a part without nodes or
+/// faces. The message lists the existing sets.
 std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
-/// Faces of a set of a mesh, as mesh::faces_of finds them.
+/// Faces of a set: the listed ones, and the surface triangles whose nodes or whose tetrahedron are listed.
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh);
 /// Returns the node numbers of a part while the plan of its body is being made. `sets`: BodyPlan::sets.
 std::vector<Index> nodes_of(const PartEntry& part, const PlannedMesh& mesh, const std::map<std::string, MeshSet>& sets);
 
-/// Returns a set of the mesh or of the scene. Throws SceneError if there is none of this name.
+/// Returns the set with this name: from `sets`, or else from Mesh::sets. Throws SceneError if neither has it.
 const MeshSet& find_set(const std::string& name, const Mesh& mesh, const std::map<std::string, MeshSet>& sets,
                         const Place& place);
-/// Returns the expected value in an error message about a set that does not exist.
+/// Text for the part "expected" of an error message about a missing set: lists the existing sets.
 std::string expected_set(const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
 /// Resolves the sets of a body in a scene file.
 std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const PlannedMesh& mesh, const Place& place);
@@ -226,8 +227,8 @@ std::vector<std::string_view> names_of(const std::vector<Object>& objects) {
 /// "joint".
 std::size_t find_name(std::span<const std::string_view> names, const std::string& name, const std::string& kind,
                       const Place& place);
-/// Returns `name`, or if it is empty KIND_NUMBER, where NUMBER is the number of names in `taken`. Throws SceneError if
-/// an object of this kind has the name already. `place`: entry of the object.
+/// Returns `name`. If it is empty, returns KIND_NUMBER, where NUMBER is the number of names in `taken`. Throws
+/// SceneError if an object of this kind has the name already. `place`: entry of the object.
 std::string choose_name(const std::string& name, std::span<const std::string_view> taken, const std::string& kind,
                         const Place& place);
 /// Returns the index of a body or a collider in a plan. Throws SceneError if the plan has none of this name.

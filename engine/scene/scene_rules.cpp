@@ -21,8 +21,8 @@ constexpr KeyDoc mask_doc{.meaning =
                           .limits = within(0, all_groups)};
 
 struct MaterialName {};
-/// Moduli of the laws of Ogden and of Mooney and Rivlin, in the form that papers use. `ogden` and `mooney_rivlin`
-/// convert them to the settings of a material.
+/// Moduli of the laws of Ogden and of Mooney and Rivlin, as papers give them. The functions ogden() and mooney_rivlin()
+/// convert them to MaterialSettings.
 struct OgdenEntry {
     std::vector<OgdenTerm> terms;
     Real bulk_modulus = 0;  // [Pa]

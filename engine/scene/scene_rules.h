@@ -151,9 +151,9 @@ void add_surface_keys(Rule<Entry>& rule, const KeyDoc& friction, const KeyDoc& r
 struct KeysOfKind {
     std::vector<std::string> required, optional;
 };
-/// Throws SceneError unless the keys of an object suit its kind. `given`: the keys that only some kinds use, and
-/// whether the object has them. `kind`: text for the message, for example: the quantity "force". `no_keys`: expected
-/// value in the message if the kind uses none of these keys.
+/// Throws SceneError unless the keys of an object suit its kind. `given`: pairs (key that only some kinds use, true if
+/// the object has it). `kind`: text for the message, for example: the quantity "force". `no_keys`: expected value in
+/// the message if the kind uses none of these keys.
 void check_keys_of_kind(const Place& place, const std::string& kind, const KeysOfKind& keys,
                         const std::vector<std::pair<std::string, bool>>& given, const char* no_keys = "");
 

@@ -40,7 +40,7 @@ void check_slider(const Place& place, const SliderEntry& slider) {
 }
 
 /// Target of a slider that moves a collider or a pin. `motion`: motion that the scene prescribes for the object. Throws
-/// SceneError if it is not zero.
+/// SceneError unless `motion` is zero, because the slider alone must move the object.
 template <class HandleType>
 SliderTarget moved(const World& world, HandleType object, const Motion& motion, const Place& place) {
     if (!motion.keys.empty() || !motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0))

@@ -176,7 +176,7 @@ Json either_schema(Json one, Json other) {
 Json rule_schema(SchemaBook& book, const RuleTable& rule) {
     const std::string& name = rule.name();
     if (!book.contains(name)) {
-        book[name] = nullptr;  // an entry, so that the recursion ends if the type contains itself
+        book[name] = nullptr;  // placeholder that ends the recursion if the type contains itself
         Json definition = rule.schema(book);
         book[name] = std::move(definition);
     }

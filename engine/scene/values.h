@@ -19,8 +19,8 @@ namespace skerry {
 struct FilePath {
     std::filesystem::path path;
 };
-/// A rotation, stored as axis times angle. In a scene file it is an axis with an angle in degrees or in radians, or a
-/// list of the rows of a matrix.
+/// A rotation, stored as axis times angle. A scene file gives it as an axis with an angle in degrees or in radians, or
+/// as the rows of a matrix.
 struct Rotation {
     Vec3 value = Vec3::Zero();  // [rad]
 };
@@ -195,7 +195,7 @@ struct Value<Named<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Reads values of all other types, which are objects with a rule.
+/// Reads a value of any type without a specialisation above: an object with a Rule.
 template <class T>
 struct Value {
     static void read(const Json& json, const Place& place, const KeyDoc&, T& out) {

@@ -17,8 +17,8 @@ void for_each_path(const SceneFile& scene, auto use) {
     };
     for (const BodyEntry& body : scene.bodies) {
         if (body.mesh) use_mesh(*body.mesh);
-        // A visual surface or an included scene without other keys can be a text instead of an object. The whole entry
-        // is then replaced by the path.
+        // If a visual surface or an included scene has only a path, its entry may be this path itself instead of an
+        // object. The whole entry is then replaced by the new path.
         if (body.visual)
             use(body.visual->scale ? body.visual->place.key("file") : body.visual->place, body.visual->file.path);
     }

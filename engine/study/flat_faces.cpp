@@ -35,8 +35,8 @@ Real angle_at(Index node, const std::array<Index, 3>& triangle, std::span<const 
     return std::atan2(side(1).cross(side(2)).norm(), side(1).dot(side(2)));
 }
 
-/// For each triangle: normals of the smooth surface to which it belongs, at its three nodes. They are means of the
-/// normals of the faces of this surface at the node, weighted by the angles of the faces there.
+/// For each triangle: normals of its smooth surface at the three nodes. A normal is the mean of the normals of the
+/// faces of this surface around the node, weighted by the angles of these faces at the node.
 std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
                                                 std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const Vec3> normals) {
@@ -78,8 +78,9 @@ bool is_name(const std::string& name, const BodyEntry& body, const std::string& 
 }  // namespace
 
 Real FlatBody::error() const {
-    // Relative error of the displacements, divided by that of the radius. The displacement of a shell under pressure
-    // grows with the square of the radius, which gives 2. The load acts on the flat faces, which adds 1.
+    // Relative error of the displacements, divided by the relative error of the radius. The displacement of a shell
+    // under pressure grows with the square of the radius, which gives 2. The pressure acts on the flat faces instead of
+    // the curved surface, which adds 1.
     constexpr Real errors_of_radius = 3;
     return is_held ? errors_of_radius * faces.share : 0;
 }
@@ -137,8 +138,8 @@ std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world) {
 
 std::vector<std::string> flat_texts(std::span<const FlatBody> bodies) {
     constexpr Real degrees = 180 / std::numbers::pi;
-    std::map<std::string, std::size_t> counts;                 // number of bodies with a remark
-    std::vector<std::pair<std::string, std::string>> remarks;  // name of the first body, and its remark
+    std::map<std::string, std::size_t> counts;                 // number of bodies with each remark
+    std::vector<std::pair<std::string, std::string>> remarks;  // (first body with the remark, remark)
     for (const FlatBody& body : bodies) {
         const std::string text =
             ": refined meshes keep the flat faces of the file, which turn by up to " +

@@ -12,8 +12,8 @@ namespace skerry {
 
 /// Flat faces of a mesh that approximate a curved surface.
 struct FlatFaces {
-    // Mean distance of the flat faces from a smooth surface through their nodes, divided by its radius of curvature. 0
-    // if no part of the surface is curved.
+    // Mean distance of the flat faces from a smooth surface through their nodes, divided by the radius of curvature of
+    // this surface; 0 if no part is curved.
     Real share = 0;
     Real angle = 0;  // largest angle between neighbouring faces of the curved surface [rad]
 };
@@ -31,10 +31,10 @@ struct FlatBody {
     /// Relative error of displacements and stresses of the body; 0 unless it is held.
     Real error() const;
 };
-/// Returns the bodies of the scene file that have curved surfaces. Bodies of included scenes are omitted.
+/// Returns the deformable bodies with a curved surface whose mesh is read from a file or fills a surface.
 std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world);
 
-/// Returns the remarks of a study on these bodies. Bodies with equal remarks share one text.
+/// Returns the remarks of a study on `bodies`. Bodies with equal remarks share one text.
 std::vector<std::string> flat_texts(std::span<const FlatBody> bodies);
 
 }  // namespace skerry

@@ -44,7 +44,8 @@ double most_cost_of_level(const StudiedScene& scene) {
     return scene.has_explicit ? 16 : 8;
 }
 
-/// Adds a run with the meshes of `level`. If the scene has no such meshes, the run gets the reason and is left out.
+/// Adds a run with the meshes of `level`. If a mesh lacks this level, the run gets the reason for it and will be left
+/// out.
 void add_level_run(const StudiedScene& scene, int level, StudyStage stage, std::vector<PlannedRun>& plan) {
     if (scene.levels.meshes.empty()) return;
     plan.push_back({{.refine = level}, std::pow(most_cost_of_level(scene), level), {}, stage});
@@ -94,7 +95,7 @@ std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
     std::vector<PlannedRun> plan{{{}, 1, {}, StudyStage::start}, {{.draw = 1}, 1, {}, StudyStage::start}};
     add_element_runs(scene, plan);
     plan.push_back({{.step = 0.5}, 2, {}});
-    constexpr double solving = 1.5;  // the contact solver needs about twice the sweeps, which take half of the CPU time
+    constexpr double solving = 1.5;  // twice the solver sweeps, which take half of the CPU time
     plan.push_back({{.tolerance = 0.01}, solving, {}});
     add_level_run(scene, -1, StudyStage::basic, plan);
     if (scene.levels.coarsest <= -2) add_level_run(scene, -2, StudyStage::basic, plan);
@@ -132,7 +133,7 @@ bool gets_all_threads(double cost, double total, int threads) {
 }
 
 double wall_time(std::vector<double> costs, int threads) {
-    constexpr double efficiency = 0.7;  // gain of each further thread, relative to one thread
+    constexpr double efficiency = 0.7;  // share of the speed of one thread that each further thread adds
     std::ranges::sort(costs, std::greater());
     double total = 0, wall = 0;
     for (const double cost : costs) total += cost;
@@ -163,7 +164,8 @@ void keep_to_budget(double budget, int threads, std::size_t first, std::span<Pla
 std::vector<std::string> variant_assignments(const StudiedScene& scene, const StudyVariant& variant, Real mean_step) {
     std::vector<std::string> assignments = scene.assignments;
     if (variant.step != 1) {
-        // so that rounding adds no step to a call of advance that is a whole number of steps
+        // A slightly longer step, so that rounding adds no step to a call of advance that lasts a whole number of
+        // steps.
         constexpr double slack = 1 + 1e-9;
         assignments.push_back("settings.step_size=" + number_json(mean_step * variant.step * slack));
         if (scene.settings.implicit_step > 0)

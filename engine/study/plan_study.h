@@ -18,12 +18,12 @@ namespace skerry {
 struct StudiedScene {
     std::filesystem::path path;
     SceneFile file;
-    std::vector<std::string> assignments;  // changes that all runs share
+    std::vector<std::string> assignments;  // changes of the scene file that all runs share
     SceneLevels levels;
     Settings settings;
-    bool has_explicit = false;         // true with deformable bodies that are integrated explicitly
+    bool has_explicit = false;         // true if a deformable body is integrated explicitly
     std::vector<FlatBody> flat{};      // bodies whose refined meshes keep the flat faces of a file
-    std::vector<Real> shape_errors{};  // shape_error of each column (StudyColumn)
+    std::vector<Real> shape_errors{};  // StudyColumn::shape_error of each column
     double longest_call = 0;           // longest simulated time of a call of advance [s]
 };
 
@@ -48,9 +48,9 @@ struct PlannedRun {
 /// of the scene as it is.
 std::vector<PlannedRun> plan_study(const StudiedScene& scene);
 
-/// Predicts the costs of runs with finer meshes from the runs with coarser ones. `runs` is indexed as `plan`. From
-/// level to level the cost grows at most as the number of tetrahedra times the number of steps; on small meshes it
-/// grows less.
+/// Predicts the costs of runs with finer meshes from the runs with coarser ones. `runs` is indexed as `plan`. From one
+/// level to the next finer one the cost grows at most like the number of tetrahedra times the number of steps, and less
+/// on small meshes.
 void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, std::span<PlannedRun> plan);
 
 /// Predicted wall time of runs with these costs, in units of the cost.

@@ -57,7 +57,8 @@ StudyColumn column_from(const Json& json) {
     return column;
 }
 
-/// True if every column has a value for each row, and if a run with the status `ok` has rows and columns.
+/// True if every column has one value for each row. A run with the status `ok` must also have at least one row and
+/// column.
 bool is_whole(const StudyRun& run) {
     if (run.status == StudyRunStatus::ok && (run.time.empty() || run.columns.empty())) return false;
     return std::ranges::all_of(run.columns,
@@ -129,7 +130,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     if (folder.empty()) return;
     make_folder(folder);
     file_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    // On a file system without locks, flock fails with another error. The folder is then used without a lock.
+    // On a file system without locks, flock() fails with an error other than EWOULDBLOCK. The folder is then used
+    // without a lock.
     if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         close(file_);
         refuse_in(folder.string(), "study", "folder", "a folder in which another study runs",
@@ -175,7 +177,7 @@ void remove_run(const std::filesystem::path& folder, const StudyVariant& variant
         !schema->get_ref<const std::string&>().starts_with("skerry.study_run/"))
         refuse_in(file.string(), "study", "folder", "a file that is no run of a study",
                   "runs of a study, which are replaced", "choose another folder");
-    std::error_code ignored;  // a file that remains is refused when it is read
+    std::error_code ignored;  // an error is ignored here, because read_run() refuses a file that remains
     std::filesystem::remove(file, ignored);
 }
 

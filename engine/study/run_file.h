@@ -32,7 +32,7 @@ void write_run(const std::filesystem::path& folder, const std::string& inputs, c
 
 /// Result of a run in a folder.
 struct StoredRun {
-    std::optional<StudyRun> run;  // the run, if the file holds it with the given inputs
+    std::optional<StudyRun> run;  // the run, if the file holds it and was written for the given inputs
     std::string found;            // text for a message if the file holds anything but this run; else empty
 };
 StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);

@@ -113,9 +113,10 @@ private:
 
 void perturb_start(int draw, World& world) {
     if (draw == 0) return;
-    constexpr double largest = 1e-12;  // [m]
+    constexpr double largest = 1e-12;  // largest movement [m]; components get half of it, as sqrt(3) / 2 < 1
     std::mt19937_64 engine(static_cast<std::uint64_t>(draw));
-    // Between -1 and 1 with 53 bits; the distributions of the standard library are not the same on every machine.
+    // Random number between -1 and 1 with 53 bits. The distributions of the standard library are not used, because
+    // their results differ between implementations.
     const auto number = [&] { return static_cast<double>(engine() >> 11) * 0x1p-52 - 1; };
     const auto movement = [&] {
         const Real x = number(), y = number(), z = number();

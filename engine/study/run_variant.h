@@ -17,8 +17,8 @@ struct VariantJob {
 };
 
 /// Simulates a variant with the calls of advance of `skerry run`, and stores everything except the assignments in
-/// `run`. If the scene is invalid or a step fails, the status in `run` says so. `share`: is set to the simulated share
-/// of the duration, from 0 to 1. Returns false if `stop` ended the run between two steps.
+/// `run`. If the scene is invalid or a step fails, the status in `run` says so. `share`: receives the part of the
+/// duration simulated so far, from 0 to 1. Returns false if `stop` ended the run between two steps.
 bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run);
 
 /// Moves the nodes that no attachment holds by at most 1e-12 m. `draw`: seed of the random movements; 0 moves nothing.

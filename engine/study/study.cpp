@@ -23,7 +23,7 @@ namespace skerry {
 
 namespace {
 
-// Time between two calls of StudySettings::go_on, so that a program reacts to Ctrl-C within 50 ms.
+// Time between two calls of StudySettings::go_on. It lets a program react to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
 constexpr double usual_budget = 15;  // default of StudySettings::budget; short studies get more, see drop_pointless()
@@ -118,8 +118,9 @@ private:
         return end;
     }
 
-    /// Removes runs from the plan that are pointless according to the first run: other tolerances if there are no
-    /// contacts, and steps longer than a call of advance. Raises the default budget if the first run is short.
+    /// Removes runs from the plan that the first run shows to be pointless: runs with other tolerances if there were no
+    /// contacts, and runs with steps longer than a call of advance. Raises the default budget if the first run is
+    /// short.
     void drop_pointless() {
         mean_step_ = runs_[0].time.back() / static_cast<Real>(std::max<std::uint64_t>(runs_[0].steps, 1));
         std::erase_if(plan_, [&](const PlannedRun& planned) {
@@ -164,7 +165,7 @@ private:
         return result;
     }
 
-    /// Refuses runs whose columns are not those of the scene, because no values of them can be compared.
+    /// Marks runs whose columns differ from those of the first run as refused, because their values cannot be compared.
     void refuse_other_columns() {
         const auto same = [](const StudyColumn& a, const StudyColumn& b) {
             return a.what.probe == b.what.probe && a.what.quantity == b.what.quantity && a.what.unit == b.what.unit;
@@ -285,7 +286,8 @@ private:
     /// Writes the run into the folder. If this is impossible, the study continues, because its results do not need the
     /// files.
     void store(std::size_t i) {
-        // A refused scene is not stored: the reason may be a missing program or too little memory at the moment.
+        // A refused run is not stored, so that the next study tries it again: a program may have been missing, or
+        // memory short.
         if (settings_.folder.empty() || runs_[i].status == StudyRunStatus::refused) return;
         try {
             write_run(settings_.folder, inputs_[i], runs_[i]);
@@ -329,12 +331,12 @@ private:
     std::vector<PlannedRun> plan_;
     const FolderLock lock_;  // constructed after `scene_`, so that an invalid scene creates no folder
     Real mean_step_ = 0;     // mean step of the unchanged scene [s]
-    // The following vectors are indexed as the plan.
+    // The following three vectors are indexed like `plan_`.
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run
     std::vector<std::atomic<double>> shares_;  // simulated share of each run's duration, from 0 to 1
     std::atomic<bool> is_lost_{false};
-    std::string lost_;  // message about the first run that could not be written; else empty
+    std::string lost_;  // message about the first run that could not be stored; empty if there is none
     std::atomic<int> done_{0}, running_{0};
     std::atomic<bool> stop_{false};
 };

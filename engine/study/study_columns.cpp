@@ -27,7 +27,7 @@ bool starts_with_any(std::string_view text, std::span<const std::string_view> st
     return std::ranges::any_of(starts, [&](std::string_view start) { return text.starts_with(start); });
 }
 
-/// True for the quantities of the default probes that a study keeps.
+/// True for the quantities of a default probe for which the study makes columns; it drops all others.
 bool is_default(std::string_view quantity) {
     static constexpr std::array<std::string_view, 3> kept{"displacement_", "force_", "largest_von_mises"};
     return starts_with_any(quantity, kept);
@@ -135,10 +135,10 @@ StudyRecorder::StudyRecorder(Scene& scene)
 }
 
 void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
-    std::string of_all = "bodies";  // name of the columns that summarise all bodies
+    std::string of_all = "bodies";  // probe name of the columns with statistics of all bodies
     while (std::ranges::find(of_scene, of_all, &RecordedProbe::name) != of_scene.end()) of_all = "all " + of_all;
-    // for each quantity of bodies without attachments: name and unit for its statistics, and indices of its columns in
-    // the recorder
+    // For each quantity of bodies without attachments: the name and unit of its statistics, and the columns of
+    // `recorder_` with the values of the single bodies.
     std::vector<std::pair<SeriesColumn, std::vector<std::size_t>>> of_bodies;
     const bool keep_bodies = defaults_.size() <= 3 * most_recorded;
     std::size_t c = 1;  // column 0 is the time

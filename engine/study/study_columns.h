@@ -11,7 +11,7 @@
 namespace skerry {
 
 /// Records the probes of a scene, and the default quantities: displacement, contact force and largest stress of each
-/// body, and the energies. Each call of sample() after a step records a row.
+/// body, and the energies. A call of sample() records a row unless no step was made since the call before.
 class StudyRecorder {
 public:
     /// `scene` must not have been changed or advanced since it was built, and must outlive the object.
@@ -28,7 +28,7 @@ public:
     std::vector<std::string> bodies() const;
 
 private:
-    /// Operation that gives the value of a column from the values of some columns of the recorder.
+    /// Statistic that combines the values of several columns of `recorder_` to one value.
     enum class Part { mean, least, largest };
     struct Source {
         StudyColumn column;
@@ -36,7 +36,8 @@ private:
         std::vector<std::size_t> from;  // columns of the recorder
         std::string body{};             // see bodies()
     };
-    /// A column of a largest stress, and the node at which this stress is largest in the run so far.
+    /// A column with the largest stress of a body or a part of it, and the node with the largest value in the run so
+    /// far.
     struct Stress {
         std::size_t column = 0;  // column of the recorder
         StressProbe probe;
@@ -44,7 +45,7 @@ private:
         Real largest = 0;         // largest value so far [Pa]
         Index node = no_index;    // node with this value
     };
-    /// A probe that the study adds to those of the scene, and the name that its columns get in reports.
+    /// A probe that the study adds to the probes of the scene. `shown`: name of the probe in the columns of reports.
     struct DefaultProbe {
         RecordedProbe probe;
         std::string shown;
@@ -59,7 +60,7 @@ private:
     World& world_;
     std::vector<DefaultProbe> defaults_;
     Recorder recorder_;
-    ProbeRecorder contacts_;  // recorder of the probes of contacts
+    ProbeRecorder contacts_;  // records the probes with the quantity `contacts`
     bool many_bodies_ = false;
     Real size_ = 0;  // diagonal of the bounding box of all bodies at the start [m]
     std::vector<Source> sources_;

@@ -5,7 +5,7 @@ namespace skerry {
 
 namespace {
 
-// A number that is not finite becomes null.
+// NaN and infinity become null in the JSON text.
 Json quantity_json(const StudyQuantity& q) {
     return object_of({{"name", q.name},
                       {"unit", q.unit},

@@ -163,8 +163,8 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
                                    step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
         // The steps of single elements were computed with scalar shares of the nodal masses. The stable step of the
-        // body is computed with mass forms (mass_forms.h) and is longer. The ratios of the steps of the elements are
-        // right, so all of them are multiplied by one factor that makes the shortest equal to the stable step.
+        // body is computed with mass forms (mass_forms.h) and is longer. Only the ratios of the element steps are used:
+        // one common factor makes the shortest of them equal to the stable step.
         Real shortest = infinity;
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

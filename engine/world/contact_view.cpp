@@ -86,7 +86,7 @@ void view_contacts(WorldState& world) {
 std::span<const Contact> World::contacts() const {
     WorldState& world = *state_;
     world.settle();
-    // after a refused step the contacts may contain numbers that are not finite
+    // After a step that could not be completed, the contacts may contain NaN or infinity.
     if (world.scratch.findings.verdict.fault != StepFault::none) return {};
     view_contacts(world);
     return world.record.contact_view;

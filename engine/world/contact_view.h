@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-/// Fills RunRecord::contact_view with the contacts of the last step. Does nothing if it is up to date.
+/// Fills RunRecord::contact_view with the contacts of the last step, unless it is already up to date.
 void view_contacts(WorldState& world);
 
 }  // namespace skerry

@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Elements of a deformable body in its present shape. Those of an implicit body are in the mesh frame, all others in
-/// the world. Valid until the world changes. There are no blocks if the body is rigid.
+/// Elements of a body in its present shape: in the mesh frame for an implicit body, in world coordinates for an
+/// explicit body, no elements for a rigid body. Valid until the world changes.
 class ElementsOfBody {
 public:
     ElementsOfBody(const Model& model, std::size_t row);
@@ -37,7 +37,7 @@ private:
     const Model& model_;
     std::size_t row_;
     bool is_implicit_;
-    // elements of an implicit body, and the positions of its nodes in the mesh frame [m]
+    // of an implicit body: its elements, and the node positions in the mesh frame [m]; otherwise empty
     std::shared_ptr<const OwnElements> own_;
     std::vector<Vec3> shape_;
 };

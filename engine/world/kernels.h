@@ -1,4 +1,4 @@
-// Selects the kernels (for one instruction set) that this process runs.
+// Selects the kernels (numerical functions compiled for one instruction set) that this process runs.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view 
 
 /// Returns the kernels for the instruction set that the environment variable SKERRY_INSTRUCTION_SET names, or else for
 /// the most advanced instruction set of this CPU. The choice is made at the first call. Throws SceneError, at every
-/// call, when the variable names no known set.
+/// call, if the variable names a set that this program lacks or this machine cannot run.
 const Kernels& kernels();
 
 }  // namespace skerry

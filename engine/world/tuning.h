@@ -29,8 +29,8 @@ struct Tuning {
     bool certify_warm_start = true;  // skips the solve of a region if the impulses of the last step are accurate enough
     bool skip_separating = true;     // sets the impulses of a region to zero if none of its contacts closes
     bool frictionless_rows = true;   // solves one row per contact instead of three in a region without friction
-    // solves eight regions of 2 to 12 contacts at once in vector lanes; only with the method `ags` and the friction
-    // cone
+    // solves eight regions of 2 to 12 contacts at once in vector lanes; only with the method `ags` or `automatic`, the
+    // friction cone, and equal static and dynamic friction
     bool small_regions_in_lanes = true;
 
     bool operator==(const Tuning&) const = default;

@@ -69,7 +69,7 @@ Real energy_of_rounding(const Model& model) {
         Real farthest = 0;  // [m]
         for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
             farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
-        Real stiffness = 0;  // elastic energy divided by squared strain [J]
+        Real stiffness = 0;  // twice the elastic energy divided by squared strain [J]
         for (auto block = static_cast<std::size_t>(model.bodies.blocks[b].begin);
              block < static_cast<std::size_t>(model.bodies.blocks[b].end); ++block) {
             const auto material = static_cast<std::size_t>(model.elements.material[block]);

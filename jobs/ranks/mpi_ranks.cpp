@@ -33,8 +33,8 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// MPI passes no argument of the caller to the function that combines two records, so this pointer is global. It is set
-/// during a reduction.
+/// Function that combines two records in the present reduction. reduce() sets it. It is global, because MPI passes no
+/// argument of the caller to an MPI_User_function.
 void (*combine_in_use)(std::byte*, const std::byte*) = nullptr;
 
 /// Combines arrays of records by combine_in_use. It has the type MPI_User_function.

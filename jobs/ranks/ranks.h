@@ -42,7 +42,8 @@ public:
     virtual std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) = 0;
     /// Collective. Returns the messages of all ranks on rank 0, and nothing on the other ranks.
     virtual std::vector<RankMessage> gather(std::span<const std::byte> mine) = 0;
-    /// Ends all ranks with an exit code after an error that the other ranks do not know.
+    /// Prints `message` and ends all ranks with the exit code `code`, after an error that the other ranks do not know
+    /// of.
     [[noreturn]] virtual void abort(std::string_view message, int code) = 0;
 
     const RankTraffic& traffic() const { return traffic_; }

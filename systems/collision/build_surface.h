@@ -40,9 +40,9 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
                              SurfaceTables& surface);
 
 /// Appends the surface of a new body as a copy of the surface of an earlier body with the same mesh, and returns the
-/// ranges of the new rows. `like`: ranges of the earlier surface. `behind`: row numbers of the new body minus those of
-/// the earlier body. The differences for nodes and elements are inputs; the function computes those for triangles,
-/// edges and vertices.
+/// ranges of the new rows. `like`: ranges of the earlier surface. `behind`: row numbers of the new body minus the row
+/// numbers of the earlier body. The caller sets the differences for nodes and elements; the function sets those for
+/// triangles, edges and vertices.
 SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

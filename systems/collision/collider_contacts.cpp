@@ -53,8 +53,8 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            // `distance` bounds the distance of every point of the edge from below, so no point of the edge can touch
-            // in this step. If the edge is the axis of a capsule, the surface is nearer by the radius.
+            // `distance` is a lower bound for all points of the edge, so no point can touch in this step. scale.radii:
+            // if the edge is the axis of a capsule, the surface of the capsule is nearer by its radius.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }
@@ -90,8 +90,8 @@ private:
             {point, -(motion_.rotation * contact.normal), contact.distance, scale.contact_distance, velocity});
     }
 
-    /// True if the collider point has entered the body through the face of candidate c. False if the point is deeper
-    /// than face_depth (then it may have come from the other side of a thin part), if another face is nearer, or if the
+    /// True if the collider point has entered the body through the face of candidate c. False in three cases: the point
+    /// is deeper than face_depth and may have come from the other side of a thin part; another face is nearer; the
     /// point is outside the body, in a fold of its surface.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale.face_depth &&

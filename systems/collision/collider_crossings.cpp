@@ -15,14 +15,14 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// Tests one candidate for a crossing in this step. `least`: relative motion of body and collider during which the
-    /// two features cannot touch, or during which other candidates (nodes in a flat region) would touch first [m].
-    /// Returns true if a full test was needed.
+    /// Tests one candidate for a crossing in this step. `least`: length of relative motion of body and collider up to
+    /// which the two features cannot touch, or up to which nodes in a flat region, which are candidates of their own,
+    /// would touch first [m]. Returns true if a full test was needed.
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
-        // A rim has five points (collider_point). Only the candidate of point 0, which is furthest behind the plane of
-        // the face, is tested, because this test covers the whole rim.
+        // A rim has five points (collider_point). Only the candidate of point 0 is tested: this point is the furthest
+        // behind the plane of the face, so its test covers the whole rim.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
             feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_shape);
@@ -68,8 +68,8 @@ private:
         const Vec3 normal = pose_.rotation * touch.normal, point = to_world(pose_, touch.point);
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        // Height of the touching point of the feature above the contact point, along the normal, at the start of the
-        // step [m].
+        // Height above the contact point, along the normal, at the start of the step, of the point of the feature that
+        // touches later [m].
         Real along = 0;
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;

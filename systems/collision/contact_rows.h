@@ -23,7 +23,7 @@ struct PairData {
     PairState state;
     PairScale scale;
     SurfaceProperties surface;
-    Real travel;  // travel of the pair up to the start of this step (contact_reach.h) [m]
+    Real travel;  // travel T of the pair at the start of this step (contact_reach.h) [m]
     std::span<const Candidate> candidates;
 
     PairData(const CollisionInputs& all_inputs, const PairTable& pairs, Index p);
@@ -53,8 +53,8 @@ ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind 
 /// number of the contact point among the points of this candidate, counted from 0.
 std::uint64_t feature_of_touch(const PairData& pair, std::uint64_t feature, Index number);
 
-// Upper limits of the number in feature_of_touch. It is below touches_of_triangle for a cylinder and a triangle, and
-// below touches_of_shape for a cylinder and any other shape, where the upper half is used for crossings
+// Upper limits of the argument `number` of feature_of_touch: touches_of_triangle for a cylinder and a triangle,
+// touches_of_shape for a cylinder and any other shape. The upper half of the latter range is used for crossings
 // (cylinder_crossings.cpp).
 inline constexpr Index touches_of_triangle = 64, touches_of_shape = 512;
 
@@ -63,7 +63,7 @@ inline constexpr Index touches_of_triangle = 64, touches_of_shape = 512;
 Stencil stencil_of_point(const std::array<Index, 4>& node, const std::array<Real, 3>& weight);
 
 /// Contact stencil of two edges. `node`: both nodes of the first edge, then both nodes of the second edge. Nodes with
-/// weight 0 are replaced by another node of the stencil.
+/// weight 0 are replaced by another node of the stencil, so that they do not become part of the contact region.
 Stencil stencil_of_edges(const std::array<Index, 4>& node, const SegmentSegment& closest);
 
 /// Merges the rows of all blocks and the rows `more` into `merged`, in key order. The rows of the blocks, one block

@@ -14,9 +14,8 @@ namespace skerry {
 
 namespace {
 
-// Lower bound of the ratio of two displacements: the greatest one of the rim nodes of a cylinder and the greatest one
-// of all rim points. A rim point between two nodes can move further than both nodes, but travel is measured at nodes
-// only.
+// Lower bound of the greatest displacement of a rim node of a cylinder, divided by the greatest displacement of any rim
+// point. Travel is measured at nodes only, but a rim point between two nodes can move further than both.
 constexpr Real of_rim_nodes = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
@@ -53,15 +52,17 @@ public:
     Real least_distance() const { return least_; }
 
 private:
-    /// Stores the travel up to which candidate c needs no test (asleep_until). `distance`: lower bound of the distance
-    /// between the two surfaces [m]. Returns true if the contact points of the candidate must be computed in this step.
+    /// Stores asleep_until of candidate c, the travel of the pair up to which the candidate needs no test. `distance`:
+    /// lower bound of the distance between the two surfaces [m]. Returns true if the contact points of the candidate
+    /// must be computed in this step.
     bool note(Index c, Real distance) {
         least_ = std::min(least_, distance);
         asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
     /// True if `bound`, a lower bound of the distance, shows that candidate c has no contact in this step; asleep_until
-    /// is then stored. Otherwise the caller stores it with a sharper bound that follows from the contact points.
+    /// is then stored. If the result is false, the caller computes the contact points and stores asleep_until with the
+    /// sharper bound that follows from them.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
@@ -107,8 +108,9 @@ private:
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
             // A nearly flat edge makes a contact only with an end of the cylinder, or where it crosses the curved side
-            // and the normal is perpendicular to it. Elsewhere the faces support the cylinder; a contact at an edge,
-            // for example parallel to a rolling cylinder and ahead of it, would act as a bump.
+            // and is perpendicular to the contact normal. Elsewhere the adjacent faces support the cylinder. A contact
+            // at the edge would act as a bump, for example if the edge is parallel to a rolling cylinder and ahead of
+            // it.
             const CylinderPlace place = place_of(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =

@@ -25,9 +25,8 @@ constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::
                 crossing_on_the_way = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::most <= touches_of_shape);
 
-// A shape can only pass completely through the other one within the step if the motion exceeds this fraction of half
-// the thickness of the thinner shape; otherwise a test at the end of the step suffices. The fraction 0.5 includes a
-// wide safety margin.
+// If the motion is at most this fraction of half the thickness of the thinner shape, a test at the end of the step
+// suffices: to pass completely through the other one, a shape must move much further.
 constexpr Real thin_fraction = 0.5;
 
 class CylinderCrossings : PairCrossings {
@@ -120,9 +119,9 @@ private:
         return true;
     }
 
-    /// If any contact point overlaps at the end of the step, adds all contact points that are nearer than the shell
-    /// distance then, and returns true. Contacts at the overlapping points alone would let the cylinder rotate and
-    /// overlap at the other points.
+    /// If the shapes overlap at any contact point at the end of the step, adds all contact points whose distance is
+    /// below the shell distance at this time, and returns true. Contacts at the overlapping points alone would let the
+    /// cylinder rotate and overlap at the other points.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -250,9 +249,9 @@ private:
     /// [m]. `along` and `left`: distances between the surfaces at the contact point at the start and at the end of the
     /// step [m].
     ///
-    /// If an earlier attempt at the step already had this contact and `left` is still negative, the contact kept its
-    /// gap open along a straight path, but the rotation of the cylinder has closed it. The distance of the contact is
-    /// then reduced by the overlap.
+    /// If an earlier attempt at the step already had this contact and `left` is still negative, the contact has kept
+    /// the gap open for a straight path of the contact point, but the rotation of the cylinder has closed it. The
+    /// distance of the contact is then reduced by the overlap.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
@@ -261,8 +260,8 @@ private:
                                kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
                                stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
-        // The normal is that at the time of contact. If the shapes have rotated by more than a right angle since the
-        // start of the step, `along` can be negative although nothing overlapped then.
+        // `along` is measured at the start of the step, but along the normal at the time of contact. If the shapes have
+        // rotated by more than a right angle in between, it can be negative although nothing overlapped at the start.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (left < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -272,15 +271,16 @@ private:
         found.push_back(row);
     }
 
-    /// Distance that must remain between a feature and the cylinder. A feature counts as crossing only if it comes
-    /// nearer than a tenth of the shell distance (contact_slack). A feature that a contact stops at the shell distance
-    /// is thus no crossing.
+    /// Distance that must remain between a feature and the cylinder. A feature counts as crossing only if the gap
+    /// becomes smaller than a tenth of the shell distance (contact_slack). A feature that a contact stops at the shell
+    /// distance therefore does not count. Without a shell distance, first_touch() uses a tenth of the distance at the
+    /// start of the step.
     KeptApart kept(Real radius) const { return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity}; }
     bool any_moves(const std::array<Index, 3>& node) const {
         return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
     Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
-    /// Index of the first point of a rim, whose position depends on the face (collider_point).
+    /// Number of the first point of a rim (collider_point). The position of this point depends on the face.
     static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
     /// Pose of a shape at `time`, a fraction of the step.
     RigidMotion at(const RigidMotion& pose, Real time) const {

@@ -18,8 +18,8 @@ namespace skerry {
 
 namespace {
 
-// Number of trees that one task refits in a few microseconds, and number of bodies whose boxes and spheres one task
-// computes in less time.
+// Number of trees that one task refits, and number of bodies whose boxes and spheres one task computes. A task takes at
+// most a few microseconds.
 constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;
 // Numbers of bodies or pairs that one task processes in a few microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
@@ -85,8 +85,8 @@ bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     return below;
 }
 
-/// Writes `travel`, `travel_bound` and `closing` of a pair: bounds of the relative motion of its partners, up to the
-/// start and up to the end of this step.
+/// Writes bounds of the relative motion of the partners of a pair: `travel` up to the start of this step,
+/// `travel_bound` up to its end, `closing` within it. For two bodies, also updates frame_apart and frame_path.
 void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Real h, Index p, PairTable& pairs) {
     const Index a = pairs.first[p], b = pairs.second[p];
     if (pairs.kind[p] == PairKind::collider) {
@@ -113,7 +113,8 @@ void list_bodies(SearchMemory& memory) {
 }
 
 /// True if the candidate list of a pair is complete for the step that begins. For a body paired with itself, the list
-/// may be complete beyond valid_until, because its parts move together (self_motion.h); valid_until is then raised.
+/// may stay complete beyond valid_until, because neighbouring parts of the body move alike (self_motion.h). The
+/// function then raises valid_until.
 bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, PairTable& pairs) {
     if (pairs.travel_bound[p] < pairs.valid_until[p]) return true;
     if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > -infinity)) return false;
@@ -134,7 +135,8 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, const Colli
             pairs.fresh[p] = !is_valid(inputs, settings, h, static_cast<Index>(p), pairs);
         }
     });
-    // Every index is written, but kept only if the pair has expired: a branch would be hard to predict.
+    // Every index is written, but kept only if the list of the pair has expired. This needs no branch, which would be
+    // hard to predict.
     memory.expired.resize(pairs.size() + 1);
     std::size_t expired = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -247,8 +249,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
     const bool anew = !(pairs.valid_until[p] > -infinity) || pairs.state[p] != PairState::apart;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
-        // Whether the surfaces cross is tested before the search, because surfaces that do not cross need a smaller
-        // search distance. A pair that is already known to be apart stays apart (PairTable::state).
+        // The test for crossing surfaces precedes the search, because surfaces that do not cross need a smaller search
+        // distance. A pair that is already known to be apart stays apart (PairTable::state).
         const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, box);
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
@@ -296,9 +298,9 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Requests new displacement origins for the bodies of expired pairs: from then on, displacements are measured from the
-/// present positions. A list is valid for the travel m - 2 d (contact_reach.h), with the margin m and the displacement
-/// d. Bodies with a small d are left out, because a new origin would hardly prolong the validity of their lists.
+/// Requests that displacements of the bodies of expired pairs are measured from their present positions from now on. A
+/// list is valid for the travel m - 2 d (contact_reach.h), with the margin m and the displacement d. Bodies with a
+/// small d are left out, because a new origin would hardly prolong the validity of their lists.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real good_part = 0.25;

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Updates the list of pairs and the candidate list of each pair. Returns false if no list has expired; this takes one
-/// comparison per body, collider and pair.
+/// Updates the list of pairs and the candidate list of each pair. Returns false if no list has expired. Such a call
+/// makes only one comparison per body, collider and pair.
 ///
 /// If a body or collider has travelled up to its limit (SearchState), a broad search lists all pairs again. For each
 /// pair with an expired candidate list, the trees of its bodies are refitted to the present node positions and

@@ -17,10 +17,10 @@ namespace skerry {
 
 namespace {
 
-// Work of one block, in units of the test of one candidate of two surfaces. Each pair adds a fixed amount of work. A
-// candidate of a body and a collider counts several times, because only candidates of two surfaces are tested in groups
-// of eight. A block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all
-// candidates must be tested.
+// candidates_per_block: work of one block; the unit is the test of one candidate of two surfaces. A block takes a
+// microsecond if no candidate can touch in this step, and a hundred microseconds if all must be tested.
+// candidates_worth_of_a_pair: fixed work per pair. candidates_worth_of_one_at_collider: work per candidate of a body
+// and a collider; it is more than 1, because only candidates of two surfaces are tested in groups of eight.
 constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
 constexpr Index candidates_worth_of_one_at_collider = 5;
@@ -71,8 +71,8 @@ void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pai
 }
 
 /// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work, and writes the
-/// starts of the blocks to pairs.block. Replaces the work of each group of pairs by the sum over the groups before it.
-/// Returns the number of blocks.
+/// start of each block and the end of the last one to pairs.block. Replaces the work of each group of pairs by the sum
+/// over the groups before it. Returns the number of blocks.
 Index cut_blocks(Executor& executor, PairTable& pairs) {
     std::int64_t total = 0;
     for (std::int64_t& work : pairs.work) total += std::exchange(work, total);
@@ -164,8 +164,8 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
         write_with_crossings(static_cast<std::size_t>(blocks), pairs, crossings, contacts);
         return true;
     }
-    // Pairs are sorted by key, the candidates of a pair by feature, and blocks are consecutive ranges of them. The
-    // contacts of all blocks, one after the other, are therefore in key order.
+    // Pairs are sorted by key, the candidates of a pair by feature, and each block is a range of the candidates in this
+    // order. The contacts of all blocks, one after the other, are therefore in key order.
     pairs.block_first.resize(static_cast<std::size_t>(blocks));
     std::size_t count = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {

@@ -14,9 +14,9 @@ namespace skerry {
 ///
 /// A candidate becomes a contact if its gap could close within the step of length h, at the present velocities plus a
 /// margin for the forces of the step (reach() in contact_reach.h). A candidate is skipped after one comparison as long
-/// as the travel_bound of its pair is below its asleep_until. Crossings from earlier attempts at this step
-/// (crossings.row) are added unchanged. In all new rows impulses and slips are zero, regions are no_index and states
-/// are open.
+/// as the travel_bound of the pair is below the asleep_until of the candidate. Crossings from earlier attempts at this
+/// step (crossings.row) are added unchanged. In all new rows impulses and slips are zero, regions are no_index and
+/// states are open.
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts);
 

@@ -31,8 +31,8 @@ struct NearestPoints {
     Vec3 point;   // nearest point of the second feature [m]
 };
 
-// Bound of the relative difference, due to rounding, between the distances in NearCandidate, which vector code
-// computed, and those that scalar code computes. The actual difference is much smaller.
+// Bound of the relative rounding error of the distances in NearCandidate: vector code computes them, with other
+// rounding than the scalar code here. The actual error is much smaller.
 constexpr Real lane_rounding = 1e-6;
 
 /// Tests candidates of two surfaces for crossings.
@@ -41,8 +41,8 @@ public:
     SurfaceCrossings(const PairCrossings& pair, std::span<const Real> asleep_until)
         : PairCrossings(pair), asleep_until_(asleep_until) {}
 
-    /// Tests the candidates that can have met when the travel of the pair is `travel_bound` [m]. Returns the number of
-    /// tested candidates.
+    /// Tests the candidates that can have met before the travel of the pair reaches `travel_bound` [m]. Returns the
+    /// number of tested candidates.
     std::uint64_t run(Range range, Real travel_bound) {
         return count_tested(asleep_until_, range, travel_bound,
                             [&](Index c) { return test(candidates[c], asleep_until_[c] - travel); });
@@ -107,8 +107,9 @@ private:
         Real along = 0;  // distance of the two nearest points along the normal, at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
             along += met.stencil.weight[a] * normal.dot(inputs.position[met.stencil.node[a]]);
-        // The normal is that at the time of contact. If the features have rotated by more than a right angle since the
-        // start of the step, `along` can be negative although nothing overlapped then.
+        // `along` is measured at the start of the step, but along the normal at the time of contact. If the features
+        // have rotated by more than a right angle in between, it can be negative although nothing overlapped at the
+        // start.
         found.push_back(
             contact_row(*this, candidate.feature,
                         features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
@@ -217,8 +218,9 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    // If travel_bound has reached valid_until, find_candidates kept the list because its spare distances exceed the
-    // reach of this step (is_valid, self_motion.h). They suffice if the nodes move as expected.
+    // If PairTable::travel_bound has reached valid_until, find_candidates kept the list only because the spare
+    // distances of its pairs of leaves exceed the expected motion (is_valid, self_motion.h). They suffice if the nodes
+    // move as expected.
     const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(parts, motion);
     return !within_reach && !holds_for_motion(parts, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
@@ -236,8 +238,8 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Co
 }
 
 /// Requests longer candidate lists for the pairs that move further than their lists allow. Returns the number of
-/// requests. `hopeless` counts the pairs for which no list is requested: their list was already made in this step for a
-/// motion at least as long, the motion is not finite, or requests are not `allowed`.
+/// requests. `hopeless` counts the pairs for which no list is requested, because one of these is true: their list was
+/// already made in this step for a motion at least as long; the motion is not finite; `allowed` is false.
 Index extend_lists(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
                    bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;

@@ -9,14 +9,14 @@
 namespace skerry {
 
 /// Finds features that would pass through each other while every node moves by h (velocity_next + push_out). Returns
-/// zero if the step may be committed, else the number of crossings and of pairs that move further than their candidate
-/// lists are valid for. Runs in parallel over the blocks of find_contacts.
+/// zero if the step may be committed. Otherwise returns the number of crossings plus the number of pairs that move
+/// further than their candidate lists are valid for. Runs in parallel over the blocks of find_contacts.
 ///
 /// Tests only pairs with a contact distance whose surfaces are known to be apart. Without a contact distance, surfaces
-/// may touch, and a touch cannot be distinguished from a crossing. Skips the candidates of a pair in one block if the
-/// relative motion of the pair in this step is at most half of the least distance of the candidates of this block, and
-/// a single candidate if the motion is at most half of its distance. A slow scene therefore takes one comparison per
-/// pair. BodyTable::frame_speed must be the speed of this motion.
+/// may touch, and a touch cannot be distinguished from a crossing. Skips all candidates of a pair in one block if the
+/// relative motion of the pair in this step is at most half of the least distance of the candidates of this block.
+/// Skips a single candidate if the motion is at most half of its distance. A slow scene therefore takes one comparison
+/// per pair and block. BodyTable::frame_speed must belong to velocity_next + push_out.
 ///
 /// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
 /// features meet. If a pair moves further than its candidate list is valid for, and extends_lists is set, no features

@@ -16,8 +16,8 @@ namespace skerry {
 
 /// Tests the candidates in `range` of the list of pair p, a body and an analytic collider. If use_budgets is set,
 /// candidates that cannot touch in this step are skipped. Returns the least distance of the tested features from the
-/// collider [m]. For an edge or face that lies in a flat region of the collider, the distance that it can move within
-/// this region (flat_reach) is used if it is larger.
+/// collider [m]. An edge or face in a flat region of the collider can touch only at its nodes, which are tested on
+/// their own. The distance that it can move within this region (flat_reach) is used for it, if larger.
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
@@ -28,8 +28,8 @@ Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettin
 // Number of candidates whose asleep_until is compared at once, without a branch for each candidate.
 inline constexpr Index candidates_at_once = 16;
 
-// Another triangle counts as nearer to a point only if its distance is smaller by more than this fraction of the
-// distance plus the mean edge length, which bounds the rounding error.
+// A triangle at the distance d' from a point counts as nearer than a triangle at the distance d only if d - d' exceeds
+// this fraction of d + mean edge length, a bound of the rounding errors.
 inline constexpr Real nearer_fraction = 1e-9;
 
 /// Bit mask of the candidates that may touch in this step, for candidates_at_once candidates from index `begin` on.
@@ -57,8 +57,8 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Distance below which the contact of two features is computed; above it, their distance alone shows that they do not
-/// touch [m]. `closing`: distance by which the partners may approach in this step [m].
+/// Distance of two features up to which their contact is computed [m]. If the distance is larger, it alone shows that
+/// they do not touch. `closing`: distance by which the partners may approach in this step [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }
@@ -106,8 +106,8 @@ struct PairContacts : PairData {
     }
 
     /// True if the point of candidate c has no other candidate triangle at a distance below `depth`, the distance from
-    /// the triangle of candidate c [m]. All triangles within `depth` of the point are candidates. `squared(i)`: squared
-    /// distance from the point to the triangle of candidate i [m^2].
+    /// the triangle of candidate c [m]. Other triangles need no test, because all triangles within `depth` of the point
+    /// are candidates. `squared(i)`: squared distance from the point to the triangle of candidate i [m^2].
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });

@@ -74,8 +74,8 @@ private:
     }
 
     /// True if a point behind a triangle must be pushed out through this triangle: no other triangle of the body may be
-    /// nearer to the point. If there is a nearer triangle, the point may be in front of that triangle, on the far side
-    /// of a thin part, or must be pushed out through that triangle.
+    /// nearer to the point. Otherwise the point is in front of the nearer triangle, outside a thin part of the body, or
+    /// must be pushed out through the nearer triangle.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
         // In self-contact, a point that was near the triangle in the rest shape may lie on the other side of a thin
         // part.
@@ -179,8 +179,9 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
     }
 }
 
-/// Tests the candidates of a pair that can touch at the greatest speeds of the two bodies. Appends candidates that can
-/// meet in this step to near_. Stores for each candidate the travel up to which it needs no further test.
+/// Tests those candidates of a pair that can touch if both bodies move at their greatest speeds. Appends candidates
+/// whose surfaces can meet in this step to near_. Stores for each candidate the travel up to which it needs no further
+/// test.
 void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Index p = awake.pair;
     const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],

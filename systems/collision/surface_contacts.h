@@ -15,8 +15,8 @@ namespace skerry {
 /// Tests the candidates of several pairs together, because most pairs have few candidates; distances are computed for
 /// eight candidates at a time. Candidates whose gap may close within the step of length h are appended to `found` as
 /// contacts, in list order. Candidates that could meet within the step are appended to `near`, for find_crossings. For
-/// each tested candidate, asleep_until receives the value of the pair's travel bound (contact_reach.h) below which it
-/// needs no further test.
+/// each tested candidate, asleep_until receives the value of PairTable::travel_bound up to which the candidate needs no
+/// further test (contact_reach.h).
 class SurfaceContacts {
 public:
     SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,

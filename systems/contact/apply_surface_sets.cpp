@@ -22,7 +22,7 @@ constexpr Real least_projection = 1e-6;
 
 enum class FeatureKind { vertex, edge, triangle };
 
-/// A vertex, edge or face of a body that touches.
+/// Vertex, edge or face of one partner at which a contact acts.
 struct Feature {
     Index body;
     FeatureKind kind;
@@ -40,7 +40,8 @@ public:
         const Feature first = first_feature(c), second = second_feature(c);
         if (first.set == no_index && second.set == no_index) return;
         const Index body = contacts_.first_body[c];
-        // If a collider specifies no friction, combine() uses the friction of `own`, which must therefore be the body.
+        // If a collider specifies no friction, combine() uses the friction of `own`, which must therefore be the
+        // deformable body.
         if (is_body(body))
             combine(c, first, second);
         else
@@ -90,7 +91,8 @@ private:
         const std::uint64_t key = contacts_.key[c].feature;
         const Index first = contacts_.first_body[c], body = contacts_.second_body[c];
         if (contacts_.kind[c] == ContactKind::edge_edge) return feature(body, FeatureKind::edge, second_local(key));
-        // The key of a contact with a cylinder numbers the contact points of each face (feature_of_touch).
+        // A face and a cylinder have up to touches_of_triangle contacts, which the key numbers consecutively
+        // (feature_of_touch).
         const bool cylinder = inputs_.body.core_nodes[first] == cylinder_core_nodes;
         return feature(body, FeatureKind::triangle, second_local(key) / (cylinder ? touches_of_triangle : 1));
     }
@@ -131,9 +133,8 @@ private:
         return {tangent / length, sets_.across[of.set]};
     }
 
-    /// Direction of the set in the present shape; its length is arbitrary. The direction is mapped by those faces at
-    /// the feature that are in the set, or by all faces at the feature if none is (carried()), and the results are
-    /// added.
+    /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of carried()
+    /// over the faces at the feature that are in the set; if this sum is zero, over all faces at the feature.
     Vec3 present_direction(const Feature& of) const {
         for (const bool in_set : {true, false}) {
             Vec3 sum = Vec3::Zero();

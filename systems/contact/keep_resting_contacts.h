@@ -13,7 +13,8 @@
 namespace skerry {
 
 struct RestingInputs {
-    // Columns of PairTable: ascending keys, and 1 for each pair that this step left out because neither partner moves.
+    // Columns of PairTable. `pair`: ascending keys. `idle`: 1 for each pair that this step left out because neither
+    // partner moves.
     std::span<const std::uint64_t> pair;
     std::span<const std::uint8_t> idle;
     std::span<const std::uint8_t> asleep;  // by body: 1 if it is asleep after the step
@@ -32,7 +33,7 @@ struct RestingInputs {
     }
 };
 
-/// Working memory.
+/// Working memory of keep_resting_contacts, reused in later steps.
 struct RestingMemory {
     // Source of each row of `next`: r for row r of the stored contacts, or ~r for row r of this step's contacts.
     Column<Index> source;

@@ -8,8 +8,8 @@
 namespace skerry {
 namespace {
 
-// Smallest block size and largest number of blocks. A block of 2^least_shift contacts takes a few microseconds, about
-// as long as it takes a worker to start. The number of blocks must stay small, because the table Places has an entry
+// `least_shift`: the smallest block has 2^least_shift contacts, which take a few microseconds, about as long as it
+// takes a worker to start. `most_blocks`: largest number of blocks. It is small, because the table Places has an entry
 // for each pair of blocks.
 constexpr std::size_t least_shift = 7, most_blocks = 64;
 

@@ -9,8 +9,8 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t contact_block = 512;  // number of contacts for which the old impulses are found in about 5 us
-// Number of contacts that are copied in about 5 us if other cores wrote them.
+constexpr std::size_t contact_block = 512;  // contacts per task; finding their old impulses takes about 5 us
+// Contacts per task. Copying them takes about 5 us if other cores wrote them, because their data are in other caches.
 constexpr std::size_t stored_block = 512;
 
 /// Rotates an impulse by the smallest rotation that takes the unit normal `from` to the unit normal `to`, so that the
@@ -86,8 +86,8 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
     const Real scale = last.key.empty() ? 0 : kick / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
-        // each block searches for its first key in both tables of old impulses once; then it reads the contacts and
-        // both tables side by side in key order
+        // Each block searches once for its first key in the two tables of old impulses, `last` and `resting`. Then it
+        // reads the contacts and these tables side by side in key order.
         SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
@@ -108,7 +108,8 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
                       std::span<Vec3> impulse) {
     if (last.point.empty() || now.key.empty()) return false;
     SKERRY_CHECK(last.point.size() == last.key.size() && impulse.size() == now.key.size());
-    constexpr Real least_cosine = 0.9;  // between both normals
+    // between the normals of the vanished contact and of the contact that takes over its impulse
+    constexpr Real least_cosine = 0.9;
     const Real scale = kick / last.step[0];
     const auto hand_on = [&](std::size_t gone, Rows rows, Real reach) {
         std::size_t nearest = rows.end;

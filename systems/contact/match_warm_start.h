@@ -18,7 +18,8 @@ namespace skerry {
 /// over blocks of contacts.
 ///
 /// The impulse is rotated with the contact normal. It is multiplied by `kick`, the time for which forces act in this
-/// step [s], and divided by that time in the old step. All tables are in key order, so they are read side by side.
+/// step [s], and divided by the corresponding time of the step in which it was stored. All tables are in key order, so
+/// they are read side by side.
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
                       const WarmStartTable& last, const RestingContactTable& resting, Real kick,
                       std::span<Vec3> impulse);

@@ -45,7 +45,7 @@ struct TieWorkInputs {
 TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& blocks, ContactTable& contacts,
                           TieRowTable& rows);
 
-/// Solved ties of the kind `ball`, and the columns that divide their impulses among nodes.
+/// Solved ties of the kind `ball`, and the columns needed to divide their impulses among nodes by mass.
 struct TiedMeans {
     const CableBlockTable& blocks;
     std::span<const Range> body_nodes, body_implicit;  // BodyTable

@@ -72,8 +72,8 @@ struct RigidNodes {
     }
     /// Moment arm of a contact on a round body [m]: the vector from a point on its core to the contact point, times the
     /// sum of the weights of its nodes (1 for the first partner, -1 for the second). For a sphere or capsule the point
-    /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder it is the centre, and
-    /// `weight` is the sum.
+    /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder the point is the
+    /// centre. `weight`: the sum of the weights, used only for cylinders.
     Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
                      const TouchPlaces& places) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
@@ -153,14 +153,15 @@ struct NodeGroups {
     RigidNodes rigid{};
     std::span<const JointBlock> joints{};
     SolvedCables cables{};
-    // For each body: 1 if another rank solves the rows of its joints, ties and cables. Empty: this rank solves all
-    // rows.
+    // For each body: 1 if another rank solves the equations of its joints, ties and cables. Empty: this rank solves all
+    // equations.
     std::span<const std::uint8_t> elsewhere{};
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints,
                            const CableBlockTable& cables, const Column<std::uint8_t>& elsewhere) {
-        // Only these columns are declared as used: the matrices of the clusters may still change in a step.
+        // Only these columns are declared as read. The matrices of the clusters are not read, so other tasks may write
+        // them.
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
@@ -171,7 +172,7 @@ struct NodeGroups {
                 .elsewhere = binder.read(elsewhere)};
     }
 
-    /// True if another rank solves the rows of joints, ties and cables that act on a node.
+    /// True if another rank solves the equations of the joints, ties and cables that act on a node.
     bool is_elsewhere(Index node) const {
         return !elsewhere.empty() &&
                elsewhere[static_cast<std::size_t>(rigid.node_body[static_cast<std::size_t>(node)])] != 0;
@@ -198,9 +199,10 @@ struct NodeGroups {
         for (std::size_t i = 0; i < stencil.size(); ++i)
             if (is_elsewhere(stencil[i].node[0])) contact_region[i] = no_index;
     }
-    /// A node that impulses of the joint `joint` can move.
+    /// A node that impulses of the joint `joint` can move; the region of this node is the region of the joint.
     Index node_of_joint(std::size_t joint) const { return joints[joint].moving_node(); }
-    /// The leader of a node that impulses of the cable `cable` can move.
+    /// The leader of a node that impulses of the cable `cable` can move; the region of this leader is the region of the
+    /// cable.
     Index node_of_cable(std::size_t cable, std::span<const Real> inverse_mass) const {
         Index found = no_index;
         cables.for_each_moving_node(cable, inverse_mass, [&](Index node) {

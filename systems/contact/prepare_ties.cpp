@@ -75,8 +75,8 @@ FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, 
     return at;
 }
 
-/// Mean velocity over the step of the offset of a tie, which turns with the triangle [m/s]. The triangle moves at the
-/// predicted velocities.
+/// Mean velocity over the step of the offset of a tie: the vector from the triangle to the tied point, which turns with
+/// the triangle [m/s]. The triangle moves at the predicted velocities.
 Vec3 turning_offset(const TieInputs& ties, std::size_t t, std::size_t k, Real h) {
     const Vec3& offset = ties.tie.place[k];
     if (offset.isZero(0)) return Vec3::Zero();
@@ -94,7 +94,7 @@ Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
     return motion.velocity + (rotation_matrix(h * motion.angular_velocity) * arm - arm) / h;
 }
 
-/// A point of the first body of a tie: one of its nodes, or the mean point of all.
+/// A point of the first body of a tie: one tied node, or the mean point of all nodes of the tie.
 struct TiedPoint {
     Vec3 position = Vec3::Zero();  // [m]
     FrameMotion of_frame;          // motion of the frame of its body
@@ -117,8 +117,8 @@ TiedPoint mean_of_points(const TieInputs& ties, std::size_t t) {
     return mean;
 }
 
-/// Equation of tied node `k` (row of the columns of TieTable by tied node), or of the mean point of a tie of the kind
-/// `ball`; `k` is then the first node of the tie.
+/// Equation of one tied node, or of the mean point of a tie of the kind `ball`. `k`: row of the node in the columns of
+/// TieTable that have one entry per tied node; for a `ball` the row of its first node.
 class TieRow {
 public:
     /// `weight`: weight of node `k` in the stencil; 0 for a mean point, whose nodes have stencils of their own.
@@ -200,7 +200,7 @@ ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, con
 }
 
 /// Appends a block for the equation of the mean point of a tie, unless impulses can move none of its nodes. The points
-/// of the block are stencils: each combines up to four tied nodes, and the last one is on the other object.
+/// of the block are stencils. Each combines up to four tied nodes; the last one consists of nodes of the other object.
 void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real scale, CableBlockTable& blocks) {
     const TieTable& tie = ties.tie;
     const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);

@@ -105,24 +105,25 @@ struct TieInputs {
         for_each_share(t, [&](Index node, Real share) { mean += share * position[static_cast<std::size_t>(node)]; });
         return mean;
     }
-    /// Point of the other object to which tied node `k` is tied, at the start of the step. `k`: row of the columns of
-    /// TieTable by tied node; the first node of the tie stands for the mean point of a `ball`. `t`: row of the tie.
+    /// Point of the other object to which tied node `k` is tied, at the start of the step. `k`: row of the node in the
+    /// columns of TieTable that have one entry per tied node; for the mean point of a `ball` the row of its first node.
+    /// `t`: row of the tie.
     TiePlace place(std::size_t t, std::size_t k) const;
 };
 
 /// Frame of a triangle: the first axis along its first edge, the third along its normal.
 Mat3 triangle_axes(const std::array<Vec3, 3>& corner);
 
-/// Lengths of the step and of the interval in which forces act [s], and settings of the solver.
+/// Times and solver settings of a step. `h`: step length [s]. `kick`: time for which forces act [s].
 struct TieStep {
     Real h = 0, kick = 0;
     Real recovery_speed = 0;  // greatest speed at which position errors are corrected [m/s]
     WarmStart warm_start = WarmStart::on;
 };
 
-/// Appends a row to the contacts for each tied node of a weld or slide that does not rest, and a block to `blocks` for
-/// each tie of the kind `ball`. The equations require that the position error is zero at the end of the step, or
-/// decreases at recovery_speed. Returns false if there is no tie (skipped).
+/// Prepares the ties that neither rest nor are broken: appends a row to the contacts for each unbroken node of a weld
+/// or slide, and a block to `blocks` for each tie of the kind `ball`. The equations require that the position error is
+/// zero at the end of the step, or decreases at recovery_speed. Returns false if there is no tie (skipped).
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
                   CableBlockTable& blocks);
 

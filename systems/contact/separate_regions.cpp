@@ -129,7 +129,7 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set of nodes without contacts is given a number above all contact numbers in place of its first contact. The
+    // A set of nodes without contacts is given a number above all contact indices in place of a first contact. The
     // numbers ascend in the order in which the sets are met, and their regions follow the regions with contacts.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;

@@ -29,8 +29,8 @@ inline constexpr int least_workers_for_blocks = 4;
 /// a moving node belong to no region. Returns false if there are no contacts, joints and cables (skipped).
 ///
 /// Regions are numbered in the order of their first contacts. Regions without contacts follow, in the order of their
-/// first joints, then of their first cables. Each region lists its contacts, joints and cables in order. The result
-/// does not depend on the number of workers.
+/// first joints, then of their first cables. Each region lists its contacts, joints and cables in ascending order. The
+/// result does not depend on the number of workers.
 bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region);

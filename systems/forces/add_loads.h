@@ -26,7 +26,7 @@ struct BodyField {
     Real drag = 0;                     // [1/s]
 };
 
-/// The columns of LoadTable, and the rows that the loads act on.
+/// The columns of LoadTable, and those of the bodies and nodes that the loads act on.
 struct LoadInputs {
     std::span<const LoadKind> kind;
     std::span<const Index> load_body;
@@ -69,8 +69,8 @@ struct LoadInputs {
                 .intervals = binder.value(intervals)};
     }
 
-    /// True if the field `load` acts on a body. A factor of gravity that is given for the body replaces the factor that
-    /// is given for all bodies.
+    /// True if `load`, which must be a force field, acts on `body`. A gravity factor given for this body replaces the
+    /// factor given for all bodies.
     bool acts_on(std::size_t load, std::size_t body) const;
     bool is_on_present_area(std::size_t load) const {
         return kind[load] == LoadKind::traction && area[load] == LoadArea::present;

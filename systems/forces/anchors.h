@@ -1,4 +1,5 @@
-// Position and velocity of anchors, and the distribution of forces at anchors to nodes.
+// Position and velocity of anchors, and the distribution of forces at anchors to nodes. An anchor is a point on a body,
+// on a collider or fixed in the world to which a spring or cable is attached.
 #pragma once
 
 #include <Eigen/Geometry>

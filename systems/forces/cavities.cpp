@@ -71,7 +71,7 @@ Real CavityFilling::pressure() const {
     if (law == CavityLaw::pressure) return amount;
     if (!(volume > 0)) return std::numeric_limits<Real>::quiet_NaN();
     if (law == CavityLaw::gas) return fluid.ambient * (std::pow(amount / (fluid.density * volume), fluid.exponent) - 1);
-    // A liquid boils at zero absolute pressure. Above ambient, its pressure is thus at least -ambient.
+    // A liquid boils at zero absolute pressure, so its pressure relative to ambient is at least -ambient.
     return std::max(fluid.bulk_modulus * std::log(amount / volume), -fluid.ambient);
 }
 
@@ -146,9 +146,8 @@ PipeEnd end_at(const CavityInputs& cavities, std::size_t c, std::span<const Real
     return {gas.pressure(), gas.pressure_per_mass(), c, true};
 }
 
-/// Mass that flows from the first to the second end in the time `h` [kg]. Solves the equation of the flow, conductance
-/// times the pressure difference, exactly if both pressures are linear in mass: the difference then decays
-/// exponentially.
+/// Mass that flows from the first to the second end in the time `h` [kg]. The mass flow is conductance times pressure
+/// difference. The result is exact if both pressures are linear in mass: the difference then decays exponentially.
 Real flow_between(const PipeEnd& first, const PipeEnd& second, Real conductance, Real h) {
     const Real decay = conductance * (first.per_mass + second.per_mass) * h;
     const Real share = decay > 0 ? -std::expm1(-decay) / decay : Real(1);

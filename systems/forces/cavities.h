@@ -77,8 +77,8 @@ struct CavityFilling {
     Real pressure() const;
     /// Derivative of the pressure by the mass, for a gas only [Pa/kg].
     Real pressure_per_mass() const;
-    /// Work of gas or liquid and ambient pressure on the faces, until the pressures inside and outside are equal [J]; 0
-    /// for a prescribed pressure.
+    /// Work that the filling and the ambient pressure would do on the faces until the pressures inside and outside are
+    /// equal [J]; 0 for a prescribed pressure.
     Real energy() const;
 };
 

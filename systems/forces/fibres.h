@@ -116,8 +116,7 @@ struct FibreWorkInputs {
     }
 };
 
-/// Work of the passive stress of all fibres on the nodes in a step [J]. Formulas, `h` and `lag` are those of
-/// measure_work.
+/// Work of the passive stress of all fibres on the nodes in a step [J]. Formulas, `h` and `lag`: see measure_work.h.
 Real measure_fibres(const FibreInputs& fibres, const FibreWorkInputs& step, Real h, Real lag);
 
 /// Passive energy of all fibres at the present positions [J], plus a correction for velocities that are `lag` seconds

@@ -33,7 +33,7 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
         const Vec3 here = cables.anchor.at(at), next = p + 1 < points.end ? cables.anchor.at(at + 1) : here;
         const Real length = (next - here).norm();
         blocks.length.back() = length;
-        // The direction of a shorter segment would be only rounding error, so it remains zero.
+        // Below this length the direction of a segment would be only rounding error, so it remains zero.
         const Real shortest = 1e-14 * (here.norm() + next.norm());  // [m]
         if (length > shortest) blocks.direction.back() = (next - here) / length;
     }

@@ -56,7 +56,7 @@ struct CableInputs {
     bool moves(std::size_t cable) const;
 };
 
-/// Start `t`, length `h` and force interval `kick` of a step [s], and a setting.
+/// Start `t`, length `h` and force interval `kick` of a step [s], and the recovery speed of the cables.
 struct CableTimes {
     Real t = 0, h = 0, kick = 0;
     Real recovery_speed = 0;  // greatest speed at which the excess over a prescribed length is drawn in [m/s]
@@ -113,9 +113,9 @@ struct CableMemory {
     }
 };
 
-/// Stores the tensions and lengths of the cables that act. Adds their work from the start of the previous step to the
-/// start of this step, whose lengths are known only now. Advances the greatest length of all cables with a prescribed
-/// rate. Returns false if there is no cable.
+/// Stores the tensions and lengths of the cables that act. Adds the work of these cables in the previous step, because
+/// the lengths at its end are known only now. Advances the greatest length of all cables with a prescribed rate.
+/// Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
 /// Totals over the cables that the region solver has solved in a step. Cables of ghosts do not count, because the

@@ -87,7 +87,7 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
 
 /// Velocities of an anchor in a step [m/s].
 struct AnchorVelocities {
-    Vec3 next;    // velocity that moves the anchor: the new one of its nodes, or the mean one of its collider
+    Vec3 next;    // weighted sum of its nodes' new velocities, or mean velocity of its collider in this step
     Vec3 during;  // displacement while the forces act, divided by h (measure_work)
 };
 

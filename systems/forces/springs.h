@@ -142,12 +142,12 @@ struct SpringWorkInputs {
     }
 };
 
-/// Measures the work of springs. Formulas, `h`, `kick` and `lag` are those of measure_work.
+/// Measures the work of springs. Formulas, `h`, `kick` and `lag`: see measure_work.h.
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
 /// Elastic energy of all springs at the present positions [J], plus a correction for velocities that are `lag` seconds
-/// older than positions. The correction is `lag` times the power of the change from the force of the last step to the
-/// present elastic force. `t`: present time [s].
+/// older than positions. The correction is `lag` times the power of dF, where dF is the present elastic force minus the
+/// force of the last step. `t`: present time [s].
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag);
 
 struct SpringMemory {

@@ -20,8 +20,8 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T segment_distance_squared(const LaneVec3<T>& a0, const LaneVec3<T>& a1,
                                                          const LaneVec3<T>& b0, const LaneVec3<T>& b1) {
-    // Limit of the squared sine of the angle between the two lines. Below it, rounding errors determine where the lines
-    // come nearest, and the search starts at s = 0 instead.
+    // Limit of the squared sine of the angle between the two lines. Below it, rounding errors would determine where the
+    // lines come nearest, so the search starts at s = 0.
     constexpr Real noise_sine_squared = 1e-14;
     const T zero{}, one = zero + 1.0;
     const LaneVec3<T> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;

@@ -12,12 +12,12 @@ namespace {
 // fraction of 1e-8, the sub-areas computed below would lose all digits.
 constexpr Real min_height_fraction = 1e-6;
 
-// Segments count as parallel if the squared sine of the angle between them is smaller. Small changes then move the
-// nearest points far.
+// Segments count as parallel if the squared sine of the angle between them is below this value, because small changes
+// then move the nearest points far.
 constexpr Real min_sine_squared = 1e-6;
 
-// If the squared sine of the angle between two segments is smaller, the denominator in the formula for their nearest
-// points is only a rounding error.
+// If the squared sine of the angle between two segments is below this value, the denominator in the formula for their
+// nearest points is only a rounding error.
 constexpr Real noise_sine_squared = 1e-14;
 
 Real clamp01(Real x) {

@@ -27,7 +27,7 @@ typedef std::int64_t HalfBits __attribute__((vector_size(sizeof(Real4))));
     return static_cast<unsigned>(two[0] | two[1]);
 #endif
 }
-/// Version for eight lanes. The conversion takes one instruction with AVX-512DQ.
+/// Integer of eight bits for a mask of eight lanes. The conversion takes one instruction with AVX-512DQ.
 [[gnu::always_inline]] inline unsigned bits_of(const LaneBits& mask) {
 #if defined(__AVX512DQ__)
     typedef long long Signs __attribute__((vector_size(sizeof(LaneBits))));

@@ -24,7 +24,8 @@ struct Corotational {
     /// Largest eigenvalue of dP/dF [Pa] (docs/methods/stable_step.md 4.2), with the rotation R nearest to F, S = R^T F,
     /// and the singular values s of F, the smallest with the sign of det F:
     ///     max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j))
-    /// It is infinite if R is not unique.
+    /// It is infinite if a sum s_i + s_j is 0, so that R is not unique, and its factor lambda (tr S - 3) - 2 mu is
+    /// positive.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
     /// dP/dF in the form of Tangent [Pa], with the rotation R nearest to F, S = R^T F, and the stretches s:
@@ -59,7 +60,8 @@ struct Corotational {
     }
 
     /// Adds an upper bound of dP/dF to H. With the rotation R nearest to F, a change X of F is mapped to 2 mu X +
-    /// lambda (R : X) R + kappa (X - R X^T R). The term with kappa bounds the effect of the rotation of R.
+    /// lambda (R : X) R + kappa (X - R X^T R). The term with kappa bounds the stiffness due to the rotation of the
+    /// frame R with F.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R, Terms& H) {
         const T kappa = frame_stiffness(material, F, R);
@@ -70,8 +72,8 @@ struct Corotational {
 
 private:
     /// Returns kappa for the upper bound of dP/dF (docs/methods/stable_step.md 4.2). With the rotation R nearest to F,
-    /// S = R^T F, G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu, kappa (X - R X^T R) is an upper bound of the effect
-    /// c G^-1 of the rotation of R, for changes X of F that rotate R.
+    /// S = R^T F, G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu, kappa (X - R X^T R) is an upper bound of c G^-1,
+    /// the stiffness due to the rotation of the frame R, for changes X of F that rotate R.
     ///
     /// The eigenvalues of G are the sums s_i + s_j of two stretches. They differ by at most 2 spread from their mean
     /// 2/3 tr S, where 6 spread^2 = |dev S|^2. Sums below 1e-3 are replaced by 1e-3, because R is not unique if a sum

@@ -32,8 +32,8 @@ template <class T>
 /// angle.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
-    // Newton's method ends after a step with a smaller squared rotation angle [rad^2]. The angle is then below 2e-5,
-    // and the error after the step is about its cube, 8e-15.
+    // Newton's method ends after a step whose squared rotation angle is below this value [rad^2]. The angle is then
+    // below 2e-5, and the error after the step is about its cube, 8e-15.
     constexpr Real settled_turn_squared = 4e-10;
     constexpr Real least_curvature = 1e-3;  // lower bound of det G / (tr S / 3)^3, which is 8 in the rest shape
     const LaneMat3<T> R = rotation_of(q);

@@ -1,7 +1,7 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
 // are computed and stored in single precision. Their rounding errors, 6e-8 of the strains, are negligible in the
-// stress. Loops over components are unrolled, so that the components stay in registers. All springs of a component are
-// computed before the next component, and their sums grow with it: few numbers are needed at a time.
+// stress. Loops over components are unrolled, so that the components stay in registers. The outer loop runs over
+// components, the inner one over springs, and both accumulate the sums, so that few registers are needed.
 #pragma once
 
 #ifdef __AVX512VL__
@@ -54,7 +54,7 @@ struct SixFloats {
 [[gnu::always_inline]] inline SixFloats six_of(const LaneSymmetric<Float8>& a) {
     return {{together(a.xx, a.yy), together(a.zz, a.xy), together(a.yz, a.zx)}};
 }
-/// Trace of a matrix whose components are added in order.
+/// Accumulates the trace of a matrix. add() takes the vectors of components one after the other.
 struct TraceSum {
     Float8 sum;
 
@@ -63,7 +63,8 @@ struct TraceSum {
         if (i == 1) sum = computed_here(sum + first_of(component));
     }
 };
-/// Inner product of two matrices, from the products of their components, which are added in order.
+/// Accumulates the inner product of two matrices. add() takes the products of their components one vector after the
+/// other.
 struct InnerProduct {
     KernelFloat sum;
 
@@ -88,7 +89,7 @@ struct InnerProduct {
 [[gnu::always_inline]] inline SixFloats six_of(const LaneSymmetric<Float8>& a) {
     return {{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx}};
 }
-/// Trace of a matrix whose components are added in order.
+/// Accumulates the trace of a matrix. add() takes the vectors of components one after the other.
 struct TraceSum {
     Float8 sum;
 
@@ -96,7 +97,8 @@ struct TraceSum {
         if (i < 3) sum = i == 0 ? component : computed_here(sum + component);
     }
 };
-/// Inner product of two matrices, from the products of their components, which are added in order.
+/// Accumulates the inner product of two matrices. add() takes the products of their components one vector after the
+/// other.
 struct InnerProduct {
     Float8 even, odd;
 
@@ -119,8 +121,8 @@ struct InnerProduct {
             part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
 }
 
-/// Constants of a step that are equal in all elements of a body. Each fills a register, so that instructions can read
-/// it from memory. Moduli are divided by `modulus`.
+/// Constants of a step that are equal in all elements of a body. Each fills a register, so that arithmetic instructions
+/// can take it directly from memory as an operand. Moduli are divided by `modulus`.
 struct MaxwellStep {
     // fraction 1 / (1 + h r) of the spring strain that remains after a step h at the rate r
     std::array<KernelFloat, maxwell_count> kept;
@@ -164,7 +166,7 @@ struct MaxwellStep {
     const auto prefetch = [&](const SpringStrain& of, std::size_t entry) __attribute__((always_inline)) {
         if (entry % entries_per_line == 0) prefetch_lines_ahead(&of[entry], entries_ahead, entries_per_line);
     };
-    // Component i of the matrix whose first component is the given entry.
+    // Vector i (of `components_together` components) of the matrix that begins at the given entry.
     const auto load = [&](std::size_t entry, std::size_t i) __attribute__((always_inline)) {
         prefetch(last, entry + i * components_together);
         return reinterpret_cast<const KernelFloatInMemory*>(&last[entry])[i];

@@ -38,7 +38,7 @@ template <class T>
 struct PrincipalShape {
     Three<Limited<T>> stretch;
     Limited<T> volume;
-    Three<T> area;  // derivative of J by each stretch: product of the other two
+    Three<T> area;  // derivative of J by each stretch: product of the two other stretches
     T J;
     Three<T> log_stretch;
     T log_volume;
@@ -51,8 +51,9 @@ struct PrincipalShape {
           log_stretch{log_of(stretch[0].value), log_of(stretch[1].value), log_of(stretch[2].value)},
           log_volume(log_of(volume.value)) {}
 
-    /// Powers (s_i / J^(1/3))^a for each axis, and the powers divided by the exponent a. For a = 0 they are 1 and the
-    /// logarithm, the limit of (power - 1)/a: a constant in over_exponent cancels in the derivatives of the law.
+    /// Powers (s_i / J^(1/3))^a for each axis, and the powers divided by the exponent a. For a = 0, `power` is 1 and
+    /// `over_exponent` is the logarithm, the limit of (power - 1)/a. For other a, -1/a is left out, because a constant
+    /// cancels in the derivatives of the law.
     struct Powers {
         Three<T> power, over_exponent;
     };

@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// systems/material/with_law.h describes the members of a material law. Functions by lanes are compiled in ogden.cpp.
+/// systems/material/with_law.h describes the members of a material law. ogden.cpp defines and instantiates the
+/// templates that have no body here.
 struct Ogden {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;

@@ -56,7 +56,8 @@ T energy_of(const MaterialConstants& material, const LaneSymmetric<T>& strain) {
     return 0.125 * sum;
 }
 
-/// Largest eigenvalue of sum_k M_k (x) M_k. The matrices M_k are orthogonal to each other.
+/// Largest eigenvalue of sum_k M_k (x) M_k. It is the greatest |M_k|^2, because the matrices M_k are orthogonal to each
+/// other.
 Real largest_mode(const MaterialConstants& material) {
     Real largest = 0;
     for (std::size_t k = 0; k < mode_count; ++k) {

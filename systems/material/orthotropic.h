@@ -10,8 +10,9 @@
 
 namespace skerry {
 
-/// systems/material/with_law.h describes the members of a material law. Functions by lanes are compiled in
-/// orthotropic.cpp. C = mu sum_k M_k (x) M_k + lambda I (x) I with the matrices M_k of MaterialConstants::strain_modes.
+/// systems/material/with_law.h describes the members of a material law. orthotropic.cpp defines and instantiates the
+/// templates that have no body here. C = mu sum_k M_k (x) M_k + lambda I (x) I with the matrices M_k of
+/// MaterialConstants::strain_modes.
 struct Orthotropic {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
@@ -62,8 +63,9 @@ struct Orthotropic {
 };
 
 /// Sets the elastic constants of an orthotropic material. The Lame constants become those of an isotropic material that
-/// is not stiffer in any direction of strain. The Maxwell elements of losses use these constants and are then stable,
-/// too. Requires valid moduli: positive shear moduli, and a positive definite compliance of the normal strains.
+/// is not stiffer in any direction of strain. The Maxwell elements, which model losses, use these constants, so the
+/// stability bound holds for them, too. Requires valid moduli: positive shear moduli, and a positive definite
+/// compliance of the normal strains.
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material);
 
 /// Rotates the axes of an orthotropic material by `rotation`.

@@ -16,7 +16,7 @@ struct LaneAxes {
 namespace principal_axes_detail {
 
 /// Jacobi rotation in the plane of the axes p and q: makes the entry `pq` of a symmetric matrix zero. `r` is the third
-/// axis. The columns vp and vq of the eigenvectors turn along.
+/// axis. The eigenvector columns vp and vq are rotated, too.
 template <class T>
 [[gnu::always_inline]] inline void turn(T& pp, T& qq, T& pq, T& pr, T& qr, LaneVec3<T>& vp, LaneVec3<T>& vq) {
     constexpr Real tiny = 1e-150;  // keeps the division finite if pq and qq - pp are zero

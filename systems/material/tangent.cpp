@@ -11,7 +11,7 @@ namespace skerry {
 Stretches::Stretches(const Mat3& F) {
     // Uses the eigenvalues of F^T F, which takes a third of the time of a singular value decomposition (SVD). The SVD
     // is needed if a stretch is so small that its square is lost in rounding.
-    constexpr Real flat = 1e-4;  // least squared stretch, relative to the largest squared stretch, for the fast way
+    constexpr Real flat = 1e-4;  // least ratio of the smallest to the largest squared stretch for the use of F^T F
     const SymmetricEigen squares = symmetric_eigen(F.transpose() * F);
     const Vec3& squared = squares.values;
     if (squared[0] > flat * squared[2]) {

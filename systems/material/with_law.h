@@ -12,7 +12,8 @@
 namespace skerry {
 
 /// Calls visit(law), where `law` is an empty object of the struct that implements the model. visit is compiled once for
-/// each law. Each law is a struct in a file of its own, with these members:
+/// each law. Each law is a struct in a file of its own, with these members ("by lanes": templates that compute one
+/// element per lane of a vector type):
 ///
 ///     has_frame           true if the law uses a frame that rotates with the element: then all functions by lanes take
 ///                         R, the rotation nearest to F
@@ -23,8 +24,9 @@ namespace skerry {
 ///     tangent (material, F)                                     for one element, for Newton steps
 ///     energy_density, stress (material, F[, R])                 by lanes; the stress may be a SplitStress
 ///     rough_stiffness_bound (material, |F|^2, det F)            by lanes, if stiffness_varies: >= stiffness_bound
-///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or an upper bound, as terms
-///                                                               (dynamics/stability/element_stiffness.cpp)
+///     add_stiffness (material, F[, R], H)                       by lanes: adds dP/dF or an upper bound to H
+///                                                               (StiffnessTerms in
+///                                                               dynamics/stability/element_stiffness.cpp)
 ///
 /// A law also needs an entry in with_law and, if materials can use it, in EnumNames<MaterialModel>.
 template <class Visit>

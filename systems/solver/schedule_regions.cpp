@@ -32,7 +32,7 @@ constexpr Real first_sweeps = 8, sweeps_of_size = 2;
 
 constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes a few microseconds
 
-/// Number of contacts, joint blocks and cables of a region.
+/// Number of contacts plus joint blocks plus cables of a region.
 Index contact_count(const RegionTable& regions, Index region) {
     const auto r = static_cast<std::size_t>(region);
     return regions.contacts.offset[region + 1] - regions.contacts.offset[region] +
@@ -70,8 +70,8 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
 /// counting sort places small regions of equal size next to each other.
 void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    // For each size class, from large to small: position in `order` of the next region of the class. Class 0: too large
-    // for lanes.
+    // For each size class, from large to small: index in regions.order at which the next region of the class is
+    // written. Class 0: too large for lanes.
     std::array<Index, largest_lane_region + 2> begin{};
     const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
     for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];

@@ -59,8 +59,8 @@ public:
     /// Settings with which add() would make an equal cable now: the points have their present positions.
     CableSettings settings(CableHandle cable) const;
     /// Replaces the drive. A drive equal to the present one changes no bit of the state. With a new rate, the greatest
-    /// length starts at the present length. If the old drive is also a rate, it continues from its present value
-    /// instead.
+    /// length starts at the present length. If the old drive is also a rate, the greatest length keeps its present
+    /// value instead.
     void set_drive(CableHandle cable, const CableDrive& drive);
 };
 

@@ -47,10 +47,10 @@ struct CavitySettings {
     std::optional<std::vector<std::array<Index, 3>>> faces{};
     // Prescribed pressure, gas or liquid; default: the pressure 0.
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
-    // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, for example those of a
-    // piston: during a step the volume then changes by the volume that the faces sweep. Calls that place nodes, such as
-    // World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the saved
-    // world. Not allowed for faces that enclose a volume [m^3].
+    // Volume of the gas or liquid at the start [m^3]. Required if the faces do not enclose a volume, for example those
+    // of a piston: during a step the volume then changes by the volume that the faces sweep. Calls that place nodes,
+    // such as World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the
+    // saved world. Not allowed for faces that enclose a volume.
     std::optional<Real> volume{};
 };
 

@@ -28,9 +28,9 @@ struct CollisionGroups {
     std::uint32_t mask = 0;   // groups that it can touch
 };
 
-/// Friction and restitution of a body or a collider; also of a pair of materials or a surface set (for missing values
-/// of these two see surface.h). For a body, missing values are those of its material. For a collider, missing values
-/// are those of the body that touches the collider.
+/// Friction and restitution of a body, a collider, a pair of materials or a surface set. For a body, missing values are
+/// those of its material. For a collider, missing values are those of the body that touches the collider. For a pair of
+/// materials or a surface set, see surface.h.
 struct SurfaceSettings {
     // Coulomb's friction coefficient, >= 0; default value of static_friction and dynamic_friction
     std::optional<Real> friction{};

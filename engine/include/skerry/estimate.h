@@ -31,8 +31,8 @@ struct ErrorEstimate {
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: distance of the nodes from their positions with infinitely
-    // short steps, divided by their displacement from the start. Each of the two is a root mean square over the nodes,
-    // and the largest of all samples. Not estimated for a body at rest.
+    // short steps, divided by their displacement from the start. Both lengths are root mean squares over the nodes, and
+    // for each the largest of all samples is used. Not estimated for a body at rest.
     Real step = not_estimated;
     // Displacement by deformation divided by displacement from the start, at most 1; averages and samples as for
     // `step`. Not estimated for a body at rest.
@@ -78,8 +78,8 @@ private:
 };
 
 /// Estimated relative error of the present stress of each tetrahedron, due to the mesh: square root of (energy of the
-/// stress error per volume of the tetrahedron / mean elastic energy per volume of the body). Empty for a rigid body. To
-/// reduce the error, refine the mesh where the values are largest (Zienkiewicz, Zhu 1987).
+/// stress error per volume of the tetrahedron / energy of stress and stress error per volume of the body). Empty for a
+/// rigid body. To reduce the error, refine the mesh where the values are largest (Zienkiewicz, Zhu 1987).
 std::vector<Real> mesh_error(const World& world, BodyHandle body);
 
 }  // namespace skerry

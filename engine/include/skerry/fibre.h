@@ -15,9 +15,9 @@ class World;
 
 /// A family of fibres in tetrahedra of a body. Its energy is added to that of the material. Fibres resist only stretch:
 /// W = k_1/(2 k_2) (exp(k_2 E^2) - 1) with E = max(I_4 - 1, 0) and the squared stretch I_4 (Holzapfel, Gasser, Ogden
-/// 2000).
+/// 2000); for k_2 = 0 its limit k_1 E^2 / 2.
 struct FibreSettings {
-    BodyHandle body{};  // a body that deforms
+    BodyHandle body{};  // explicit body, or implicit body if Settings::theta is 1
     // Numbers of tetrahedra in the mesh of the body, each at most once; empty: all tetrahedra
     std::vector<Index> tetrahedra{};
     // Directions in the frame of the mesh, of any length except zero: one for all of `tetrahedra`, or one for each.

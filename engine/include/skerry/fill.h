@@ -57,7 +57,7 @@ struct FilledMesh {
     SurfaceReport surface;       // check of the given surface
     SurfaceDistance distance{};  // distance from SurfaceReport::cleaned (first) to the new surface (second)
     Real tolerance = 0;          // largest distance that was allowed [m]
-    // Volume inside the given surface; empty if it is not closed or if its shells cross each other [m^3].
+    // Volume inside the given surface [m^3]; empty if the surface is not closed or its shells cross each other.
     std::optional<Real> surface_volume{};
     Real stable_step = 0;            // stable step of an explicit body of this mesh [s]
     std::vector<std::string> notes;  // corrections of the surface, regions, and failures of meshers
@@ -76,9 +76,9 @@ using FillProgress = std::function<void(const std::string&)>;
 /// process. If several meshes are made, the one with the longest stable step is returned
 /// (docs/decisions/0026-filling-surfaces.md).
 ///
-/// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. If there
-/// are nested shells or several files, the faces of each shell form a set. Its name is that of the file without
-/// extension if there are as many files as shells, otherwise shell_1, shell_2, ...
+/// If a region lies inside another shell, the regions have the labels 1, 2, ..., beginning with the region of the
+/// largest shell. If there are nested shells or several files, the faces of each shell form a set. Its name is that of
+/// the file without extension if there are as many files as shells, otherwise shell_1, shell_2, ...
 ///
 /// Identical shells are used once, and a note reports them. A note also reports if the new surface is farther from the
 /// given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a file

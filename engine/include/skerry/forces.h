@@ -60,8 +60,8 @@ struct PairForces {
     ForceReport on_first;       // forces that the second partner exerts on the first
 };
 
-/// A view of the measured forces of a world. It is valid until the world is moved or destroyed. Contacts of
-/// bodies and colliders that were removed since the call are not included.
+/// A view of the measured forces of a world. It is valid until the world is moved or destroyed. Contacts of bodies and
+/// colliders that were removed since the last call of advance are not included.
 ///
 /// Forces on sleeping bodies are mean values over the time in which the bodies were still before they fell asleep. For
 /// each body these forces balance the weight and the loads. The error of this balance is at most the change of the
@@ -87,8 +87,8 @@ public:
     /// force on this node counts for the attachment added last. The force of MaterialSettings::damping is not included:
     /// on a body with held nodes it acts on all nodes, like the drag of a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
-    /// All pairs of objects that touched during the call: first body-collider pairs, then body-body pairs, each sorted
-    /// by handles.
+    /// All pairs of objects that touched during the last call of advance: first body-collider pairs, then body-body
+    /// pairs, each sorted by handles.
     std::vector<PairForces> pairs() const;
 
 private:

@@ -58,7 +58,8 @@ struct OgdenTerm {
 MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base = {});
 
 /// `base` with the law of Mooney and Rivlin: Psi = c10 (I_1 - 3) + c01 (I_2 - 3) + K/2 (J - 1)^2, with the invariants
-/// I_1, I_2 of the stretches divided by J^(1/3) [Pa]. This is the law of Ogden with the exponents 2 and -2.
+/// I_1, I_2 of the stretches divided by J^(1/3), J = det F, and the constants c10, c01 and K [Pa]. This is the law of
+/// Ogden with the exponents 2 and -2.
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base = {});
 
 /// `base` with the law `orthotropic` for strains of some per cent at any rotation. Sets model, orthotropic,

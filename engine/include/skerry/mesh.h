@@ -87,8 +87,9 @@ Mesh cylinder(Real radius, Real height, int resolution);
 
 /// A solid of revolution about z. `profile` lists (radius, z) from bottom to top, with ascending z and positive radii;
 /// the outline is linear between these points. The mesh has `resolution` elements across the largest diameter (an odd
-/// number is rounded up to even). The height of a layer along z is about the size of an element. Kinks of the outline
-/// closer together than 0.6 elements are rounded. An end with a radius below 0.3 elements closes to a point.
+/// number is rounded up to even). The height of a layer along z is about the size of an element. Of kinks of the
+/// outline that are closer together than 0.6 elements, the mesh keeps the sharpest and cuts off the others. An end with
+/// a radius below 0.3 elements closes to a point.
 Mesh lathe(std::span<const std::array<Real, 2>> profile, int resolution);
 
 /// A skittle of the given height, standing on z = 0. It is a lathe() mesh with the outline of a ninepin.
@@ -116,8 +117,9 @@ Mesh table(const TableShape& shape);
 /// is faulty; the mesh is then left as in the file, and `inspect` counts the faults. `notes`, if given, gets sentences
 /// about divided, dropped and turned elements, each with the name of the file.
 ///
-/// An Abaqus file must list its nodes, elements and sets in Cartesian coordinates. Instances of parts are joined into
-/// one mesh. Steps, loads and constants of materials are not read.
+/// An Abaqus file must list its nodes and elements itself, in Cartesian coordinates. Keywords that generate or include
+/// them, such as *NGEN and *INCLUDE, are refused. Instances of parts are joined into one mesh. Steps, loads and
+/// constants of materials are not read.
 ///
 /// Sources of the labels; without these sources the mesh has no labels:
 /// - Gmsh: the number of the physical group (of the first group, if a volume is in several), 0 outside of all groups.
@@ -137,8 +139,9 @@ Mesh table(const TableShape& shape);
 /// - TetGen: node_marker_N and face_marker_N for each marker N but 0 of the files .node and .face.
 /// - Medit: node_ref_N and face_ref_N for each reference N but 0 of the vertices and triangles.
 /// - Abaqus: sets of nodes, sets of elements and surfaces by name. Names of an instance begin with its own name and a
-///   dot. If other objects have the same name, sets of elements are called NAME_elements and surfaces NAME_surface.
-///   A set that is just the nodes of the set of elements of the same name is dropped, and so are internal sets.
+///   dot. If other objects have the same name, sets of elements are called NAME_elements and surfaces NAME_surface. A
+///   set of nodes is dropped if a set of elements has the same name and exactly these nodes. Internal sets are dropped,
+///   too.
 /// Triangles that are not faces of a tetrahedron are dropped from sets, and a note states how many.
 ///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.

@@ -113,7 +113,7 @@ struct RigidPoints {
     // and contact points at this distance from them along the normal. 0 for other shapes.
     Real radius = 0;
     // For a cylinder: position of the contact point relative to the centre of mass [m], indexed by contact (entries of
-    // contacts with other bodies are not used). Empty for other shapes.
+    // contacts that do not touch this body are not used). Empty for other shapes.
     std::vector<Vec3> touch{};
 };
 
@@ -135,7 +135,7 @@ struct LumpedContacts {
     std::vector<Vec3> normal;                 // unit normal of the contact
     // Velocity offset of the contact [m/s]: the sum of the contributions of the gap, of the collider's motion and of
     // the angular velocity of round bodies, minus a friction correction. This correction is half of the change of the
-    // sliding velocity due to the forces of the step, perpendicular to the sliding direction.
+    // sliding velocity that the forces of the step cause, without the part of this change along the sliding direction.
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // coefficient of friction mu
     // The following arrays have one entry per node.

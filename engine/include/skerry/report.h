@@ -20,7 +20,7 @@ namespace skerry {
 /// Result of a call of World::advance. All values but `ok` and `stopped` mean that the last step was refused.
 enum class StepStatus {
     ok,          // all steps were taken
-    not_finite,  // a velocity would not be finite
+    not_finite,  // a velocity would be infinite or NaN
     too_fast,    // a body would deform too far in one step, even in 1/1024 of the stable step
     too_far,     // a body is so far from the origin that its positions have too few digits
     too_stiff,   // the stable step is too short to advance the time
@@ -34,8 +34,9 @@ enum class ContactMotion {
     slide,  // the objects press on each other and slide
 };
 /// The condition that limits the length of a step (docs/step_length.md). The limit `speed` is computed before a step.
-/// Inversions, crossings and sudden impacts are found during an attempt at a step, which is then discarded. After such
-/// an attempt, each step is at most a fifth longer than the last.
+/// Inversions, crossings and sudden impacts are found during an attempt at a step, which is then discarded. After an
+/// inversion or a crossing, each step is at most a fifth longer than the last; after a sudden impact, at most a half
+/// longer.
 enum class StepLimit {
     setting,  // Settings::step_size
     rest,     // the stable step of a body in its rest shape
@@ -86,8 +87,8 @@ struct Contact {
     Vec3 slip = Vec3::Zero();                // tangential velocity of the first body relative to the other [m/s]
     Vec3 impulse = Vec3::Zero();             // impulse on the first body [N s]
     // Duration of the forces in this step [s], by which force() divides the impulse: the time from the middle of the
-    // previous step to the middle of this step. It equals the step length if both steps are equally long, with
-    // leapfrog, and if only implicit bodies (and colliders) touch.
+    // previous step to the middle of this step. It equals the step length in three cases: both steps are equally long,
+    // the integrator is leapfrog, or only implicit bodies (and colliders) touch.
     Real seconds = 0;
     ContactMotion motion = ContactMotion::open;  // motion after the step
     Index region = -1;  // region number; -1 if no node of the contact can move, or if its bodies sleep
@@ -152,7 +153,7 @@ public:
     Real worst_error = 0;        // largest relative solver error of a region in any step
     Index worst_region = 0;      // number of contacts of the region with worst_error
     Real max_penetration = 0;    // largest overlap of surfaces in any step [m]
-    Real max_gap_violation = 0;  // largest penetration into the contact distance in any step [m]
+    Real max_gap_violation = 0;  // largest -Contact::gap in any step [m]
     // Largest overlap, in any step, between surfaces that no contact can move: held nodes inside a collider or inside
     // another held body [m].
     Real held_penetration = 0;
@@ -209,8 +210,8 @@ struct DynamicsEstimate {
     // Predicted computing time per simulated second on one core [s] if the body is explicit or implicit. It includes
     // the elements of all bodies, and the contacts and solves of this body.
     Real explicit_cost = 0, implicit_cost = 0;
-    // Largest strain that may be caused by the weight, or by an impact at the initial speed after a fall from ten times
-    // the size of the body.
+    // Estimate of the largest strain: the one caused by the weight, or by an impact at the speed sqrt(u^2 + 2 g H),
+    // which the body reaches from its initial speed u in a fall from the height H of ten times its size.
     Real strain = 0;
     // Frequency above which steps of the length deforming_step damp vibrations instead of resolving them [Hz]: 1/(4 pi
     // deforming_step), at which the angular frequency times the step length is 1/2. 0: steps damp no vibrations.
@@ -280,14 +281,15 @@ struct RunCounters {
     // Number of steps with so little work that they run on one thread, because waking other threads would take longer.
     std::uint64_t inline_steps = 0;
     std::uint64_t resting_steps = 0;  // number of steps in which all bodies are asleep and nothing moves; no stage runs
-    // Number of bodies whose elements are skipped because they fly freely and undeformed, summed over all steps.
+    // Number of bodies whose elements are skipped because the bodies fly freely and undeformed, summed over all steps.
     std::uint64_t unstrained = 0;
     std::uint64_t shortened = 0;  // number of attempts at a step that were repeated with a shorter step
     // number of attempts that were repeated because surfaces crossed; the repeated attempt treats crossings as contacts
     std::uint64_t retried = 0;
     std::uint64_t limited = 0;     // number of steps shorter than step_size, because a body is unstable at step_size
     std::uint64_t inversions = 0;  // number of times that an element turned inside out
-    // number of contacts; number of solver sweeps, summed over regions; both summed over the steps
+    // contact_sum: number of contacts, summed over the steps. iteration_sum: number of solver sweeps, summed over the
+    // regions of all steps.
     std::uint64_t contact_sum = 0, iteration_sum = 0;
     std::uint64_t solved = 0;       // number of solved regions, summed over the steps
     std::uint64_t unconverged = 0;  // number of regions that reached the iteration limit
@@ -306,8 +308,8 @@ struct RunCounters {
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;    // largest relative solver error of a region in any step
     Index worst_region = 0;  // number of contacts of the region with worst_error
-    // dissipated by contacts, dampers of springs, friction of cables, damping, material losses and plastic flow, and
-    // lost when bodies fall asleep [J]. Losses in joints are not included.
+    // Energy dissipated by contacts, dampers of springs, friction of cables, damping, material losses and plastic flow,
+    // and energy lost when bodies fall asleep [J]. Losses in joints are not included.
     Real dissipated = 0;
     Real plastic_work = 0;                            // part of `dissipated`: by plastic flow of elements in steps [J]
     Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
@@ -346,8 +348,8 @@ struct WorldReport : RunCounters {
     std::vector<StageReport> stages;           // stages in the order of the step
     // Averages: contacts per step, regions per step, and sweeps per solved region.
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;
-    // Number of searches for pairs of near bodies, number of searches for pairs of near features (both since the
-    // start), and number of feature pairs that the last searches found.
+    // Number of searches for pairs of near bodies since the start, number of searches for pairs of near features
+    // (nodes, edges, triangles) since the start, and number of feature pairs that the last searches found.
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
     // Sums over the run:
     // - tests whether a fast candidate crosses; a candidate is a node and a triangle, two edges, or a feature and a
@@ -365,7 +367,7 @@ struct WorldReport : RunCounters {
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not explain.
     // These balances are checked every 256 steps (every 128 steps if there are clusters) and now; the largest error
-    // counts. A share is the error divided by all energy or momentum that could be exchanged.
+    // counts. A relative error is the absolute error divided by all energy or momentum that could be exchanged.
     Real energy_error = 0, energy_error_share = 0;  // absolute error [J]; relative error [1]
     // Absolute error [kg m/s] and relative error [1]. Both are NaN if a held body is damped, or if a held node belongs
     // to an implicit element. The damping, or the inertia of the element, then absorbs momentum. World::forces reports

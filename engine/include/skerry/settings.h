@@ -67,8 +67,8 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;  // elastic law
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
-    // Elastic constants of the law `orthotropic`. With this law, losses and estimates use an isotropic material that is
-    // not stiffer in any direction; young_modulus and poisson_ratio are replaced by its values.
+    // Elastic constants of the law `orthotropic`. With this law, losses and estimates use an isotropic material whose
+    // stiffness exceeds the orthotropic one for no strain. Its constants replace young_modulus and poisson_ratio.
     OrthotropicModuli orthotropic{};
     std::optional<Plasticity> plasticity{};  // only with the law `hencky`; explicit bodies alone yield
 };
@@ -80,8 +80,8 @@ enum class BodyDynamics : std::uint8_t {
     // only density, friction and restitution (docs/methods/rigid_bodies.md).
     rigid,
     // The body deforms by backward Euler (see Settings::theta), which is stable at any step length. This suits stiff
-    // bodies. At small strain, elasticity is linear in the frame that moves with the body. At large strain it follows
-    // the material law, and Newton's method solves each step (docs/methods/implicit_bodies.md).
+    // bodies. At strains up to about 2 %, elasticity is linear in the frame that moves with the body. At larger strains
+    // it follows the material law, and Newton's method solves each step (docs/methods/implicit_bodies.md).
     implicit_elastic,
     // The body becomes implicit if this more than halves the predicted cost and the expected strain is at most 2 %,
     // otherwise explicit. The choice is made when the body is added, for the step length that the bodies added before
@@ -119,8 +119,8 @@ struct BodySettings {
     bool self_contact = false;                        // true: contacts act between parts of the surface of the body
     BodyDynamics dynamics = BodyDynamics::automatic;  // how the body moves
     // Mass properties of a rigid body. If none are given, they follow from the shape and the densities. `mass` alone
-    // scales the densities. If `center_of_mass` or `inertia` is given, all three must be given. Both are in the frame
-    // of the mesh, and the inertia tensor is about the centre of mass.
+    // scales the densities. If `center_of_mass` or `inertia` is given, all three must be given. Centre and inertia
+    // tensor are in the frame of the mesh; the tensor is about the centre of mass.
     std::optional<Real> mass{};            // mass of the body, > 0 [kg]
     std::optional<Vec3> center_of_mass{};  // centre of mass in the frame of the mesh [m]
     std::optional<Mat3> inertia{};         // inertia tensor, symmetric and positive definite [kg m^2]
@@ -233,8 +233,8 @@ struct Settings {
     // Thread library. `automatic` selects the first library of this build, which is tbb unless tbb was left out. Change
     // it when your program already uses another library.
     Backend backend = Backend::automatic;
-    // Number of threads. 0: with tbb as many as the caller's tbb::task_arena has, otherwise one per core. Change it
-    // when other work shares the processor.
+    // Number of threads. 0: with tbb as many as the caller's tbb::task_arena has, with openmp omp_get_max_threads(),
+    // with threads one per core. Change it when other work shares the processor.
     int threads = 0;
     // Division of contacts into regions. With `separate`, contacts that do not influence each other are solved
     // separately. Change it to `global` when you compare solvers on one large problem.
@@ -252,8 +252,8 @@ struct Settings {
     // Surfaces that overlap or are closer than the contact distance are pushed apart, at most at this speed, > 0 [m/s].
     // Change it when bodies are so small or so slow that this speed disturbs them.
     Real recovery_speed = 0.5;
-    // Treatment of bodies that overlap other bodies or colliders after one of both was added or moved by you. Bodies
-    // that are attached or have already made a step are never moved. Change it when no body may be moved at the start.
+    // Treatment of bodies that overlap other bodies or colliders after you added or moved one of the two. Bodies that
+    // are attached or have already made a step are never moved. Change it when no body may be moved at the start.
     StartOverlaps start_overlaps = StartOverlaps::resolve;
     // If true, bodies that touch or are joined fall asleep together when each of them has been still for sleep_time.
     // Steps leave sleeping bodies and their contacts unchanged, until another object presses on such a body, or you
@@ -265,8 +265,8 @@ struct Settings {
     // or too late.
     Real sleep_time = 0.5;
     // If true, a step in which surfaces would pass through each other is repeated with the crossing features as
-    // contacts. Only fast pairs are tested. Change it when surfaces may pass through each other and the tests cost too
-    // much time.
+    // contacts. Only pairs of features that may have met in the step are tested. Change it when surfaces may pass
+    // through each other and the tests cost too much time.
     bool continuous_collision = true;
 };
 

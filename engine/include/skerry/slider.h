@@ -10,7 +10,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Kinds of control that a slider can drive.
+/// Controls whose value a slider can set.
 using SliderControl = std::variant<PoseControl, MotorSpeedControl, MotorPositionControl, ValueControl>;
 
 /// An object that a slider moves or drives.

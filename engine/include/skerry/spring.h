@@ -21,7 +21,7 @@ struct SpringSettings {
     Real stiffness = 0;                      // force per elongation, >= 0 [N/m]
     Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
     std::optional<TimeTable> rest_length{};  // each value >= 0; default: the length when the spring is added [m]
-    SpringSide only = SpringSide::both;      // whether they act in tension, in compression or both
+    SpringSide only = SpringSide::both;      // spring and damper act in tension, in compression or in both
     Real strength = infinity;  // largest force, > 0 [N]; if stretched further, the spring keeps this force
 };
 

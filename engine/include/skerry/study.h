@@ -17,7 +17,8 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Changes of a run to the scene as it is, which is the scene file with StudySettings::assignments.
+/// Difference of a run from the scene as it is. "The scene as it is" means the scene file with the changes in
+/// StudySettings::assignments.
 struct StudyVariant {
     // mesh level: 0 is the mesh of the scene, each level up halves the edges, each level down doubles them
     int refine = 0;
@@ -34,7 +35,7 @@ struct StudyVariant {
 /// Outcome of a run of a study.
 enum class StudyRunStatus {
     ok,        // the run reached its end
-    failed,    // a step was refused
+    failed,    // a step could not be committed
     refused,   // the scene cannot be built with these settings, or its columns differ from those of the first run
     left_out,  // the run was not made: it did not fit into the budget, or the scene does not allow this change
 };
@@ -63,7 +64,8 @@ struct StudyColumn {
     // no_index.
     Index node = no_index;
     Vec3 place = Vec3::Zero();  // position of `node` at the start [m]
-    // Relative error of the values that finer meshes keep, because their flat faces approximate a curved surface.
+    // Relative error of the values that finer meshes do not reduce: their faces stay in the flat faces of the scene's
+    // mesh, which approximate a curved surface.
     Real shape_error = 0;
 };
 
@@ -97,11 +99,11 @@ struct StudyRun {
 /// Reliability of a quantity.
 enum class StudyVerdict {
     known,  // the differences between runs decrease as the theory says; the error bar follows from them
-    // the differences do not follow the theory, or there is another doubt; StudyQuantity::sentence tells the reason
+    // the differences do not follow the theory, or another check failed; StudyQuantity::sentence tells the reason
     irregular,
-    singular,      // the largest stress grows without limit as the mesh is refined; `error` is infinite
-    chaotic,       // differences of 1e-12 m at the start change the value; see StudyQuantity::agree_until
-    zero,          // the value is an error of the contact solver or of the steps; `error` bounds its absolute value
+    singular,  // the largest stress grows without limit as the mesh is refined; `error` is infinite
+    chaotic,   // differences of 1e-12 m at the start change the value; see StudyQuantity::agree_until
+    zero,      // the value consists only of errors of the contact solver or of the steps; `error` bounds its magnitude
     not_measured,  // the runs that could show the error are missing
 };
 template <>
@@ -118,7 +120,8 @@ struct EnumNames<StudyVerdict> {
 
 /// A number with its error bar. Values that were not measured are NaN.
 struct StudyQuantity {
-    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end; figures: end, max, min, mean, agreed
+    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end; figures: end, max, min, mean, agreed (last value on
+    // which runs with shifted starts agree)
     std::string name;
     std::string unit;                                     // SI unit; 1 for counts and ratios
     Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
@@ -143,16 +146,16 @@ struct StudyQuantity {
     Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();
     StudyVerdict verdict = StudyVerdict::not_measured;  // reliability
     std::string sentence{};                             // verdict in words
-    Real agree_until = infinity;  // time until which runs with shifted starts agree on its column [s]
+    Real agree_until = infinity;  // time until which runs with shifted starts agree on this quantity [s]
     // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
     std::vector<Real> run_values{}, run_errors{};
 };
 
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
-    StudyVariant variant;    // difference from the scene as it is
-    bool reaches = false;    // false: no settings reach the wanted error; these come within 10 % of the smallest
-    double error = 0;        // largest predicted relative error; only quantities that are known or irregular count
+    StudyVariant variant;  // difference from the scene as it is
+    bool reaches = false;  // false: no settings reach the wanted error; these exceed the smallest error by at most 10 %
+    double error = 0;      // largest predicted relative error; only quantities that are known or irregular count
     double cpu_seconds = 0;  // predicted CPU time [s]
     std::string sentence{};  // the quantity with the largest error, or why no settings reach the wanted error
     std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
@@ -165,7 +168,8 @@ struct StudyResult {
     std::vector<StudyQuantity> quantities;  // values and error bars of all reported columns
     double wanted_error = 0;                // StudySettings::error
     // Half widths of the error bars of the values in runs[0].columns, by column and row. Columns that are not reported
-    // are empty, and rows after agree_until of the column are NaN.
+    // are empty. Half widths are NaN after StudyQuantity::agree_until of the column's quantities, except in columns of
+    // statistics.
     std::vector<std::vector<Real>> bands;
     std::optional<CheapestSettings> cheapest;  // empty if no quantity is known or irregular
     Real agree_until = infinity;               // time until which runs with shifted starts agree on all positions [s]
@@ -210,7 +214,7 @@ struct StudySettings {
 /// is fails in a step, the study ends without quantities, and StudyResult::sentences contains the reason.
 ///
 /// Throws SceneError if the scene cannot be read or built, a setting or the name of a probe is invalid, the folder
-/// holds runs of another scene or of other settings, or a file of the scene changes meanwhile.
+/// holds runs of another scene or of other settings, or a file of the scene changes during the study.
 StudyResult study(const std::filesystem::path& scene, const StudySettings& settings = {});
 
 /// Returns one line per quantity with its error bar, the verdicts, the runs that are missing, and the cheapest

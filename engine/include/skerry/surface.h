@@ -18,14 +18,14 @@ class World;
 /// Surface properties of contacts between two materials. A property that `surface` does not give follows the general
 /// rule: the geometric mean of the friction coefficients of both objects, and the larger of their restitutions.
 struct MaterialPair {
-    MaterialHandle first{}, second{};  // may be the same
+    MaterialHandle first{}, second{};  // both may be the same material
     SurfaceSettings surface{};         // properties of the pair
 };
 
-/// A view of the pairs of materials of a world. It is valid until the world is moved or destroyed. Functions that
-/// change pairs may only be called between calls of advance. They throw SceneError and change nothing if a handle is
-/// stale or a value is out of range. Pairs belong to the state of the world: they are saved, cloned and hashed. The
-/// order of the two materials of a pair has no effect.
+/// A view of the surface properties of pairs of materials in a world. It is valid until the world is moved or
+/// destroyed. Functions that change pairs may only be called between calls of advance. They throw SceneError and change
+/// nothing if a handle is stale or a value is out of range. Pairs belong to the state of the world: they are saved,
+/// cloned and hashed. The order of the two materials of a pair has no effect.
 class SurfacePairs {
 public:
     /// `world` must exist as long as the view.
@@ -63,7 +63,8 @@ struct SurfaceSetSettings {
     std::vector<std::array<Index, 3>> faces{};  // boundary faces, each by its three nodes in any order
     SurfaceSettings surface{};                  // missing properties are those of the body
     // Friction coefficient for sliding perpendicular to `direction`, > 0. The friction in `surface`, which must then be
-    // given, applies to sliding along `direction`. The ratio of both values also applies to static friction.
+    // given, applies to sliding along `direction`. The ratio `friction_across` / friction also applies to static
+    // friction.
     std::optional<Real> friction_across{};
     // Direction in the frame of the mesh, carried along by the faces when the body moves and deforms. Required for
     // friction_across.

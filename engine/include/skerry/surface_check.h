@@ -25,8 +25,8 @@ enum class SurfaceFaultKind {
     shell_crossings,      // pairs of triangles of different shells that pass through each other
     overlaps,             // pairs of triangles that overlap in a common plane
     flat_shells,          // closed shells without volume
-    doubled_volumes,      // triangles or edges behind which closed shells enclose a volume twice
-    slivers,              // triangles with an altitude up to the tolerance, which is here at least default_weld
+    doubled_volumes,      // triangles or edges at which the volume inside is enclosed twice by closed shells
+    slivers,              // triangles with an altitude up to the tolerance (here at least default_weld)
     thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
@@ -53,10 +53,10 @@ struct EnumNames<SurfaceFaultKind> {
     }};
 };
 
-/// All faults of one kind. Triangles have their number in the given surface, counted from 0.
+/// All faults of one kind. Triangles are given by their numbers in the checked surface, from 0.
 struct SurfaceFault {
     SurfaceFaultKind kind{};    // kind of the fault
-    std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes, shells or places
+    std::size_t count = 0;      // number of faults; the comment on the kind says of which objects
     Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
     // pairs: second triangle of the first pair; duplicate_shells: a triangle of the repeated shell
     Index other = no_index;

@@ -18,8 +18,8 @@ namespace skerry {
 /// body's surface. The tie of a single node acts like a ball joint.
 ///
 /// The kind `ball` ties only the mean point of all nodes, weighted by their masses. This point may be at any distance
-/// from a rigid object when the tie is made, and then keeps its place on this object. The impulse of the tie acts on
-/// the nodes in proportion to their masses.
+/// from a rigid object when the tie is made, and then keeps its position relative to this object. The impulse of the
+/// tie acts on the nodes in proportion to their masses.
 struct TieSettings {
     TieKind kind = TieKind::weld;  // motion that the tie permits
     BodyHandle body{};             // a deformable body

@@ -65,8 +65,9 @@ public:
     static World from_bytes(std::span<const std::byte> bytes, const LoadSettings& settings = {});
 
     // Building the world; allowed between calls of advance. In callbacks of advance these functions throw SceneError.
-    // Handles to all other objects stay valid. The cost of a change depends on the size of the changed object only.
-    // Consecutive removals are carried out together when the tables are needed next.
+    // Removing an object keeps the handles of all other objects valid. The cost of a change depends on the size of the
+    // changed object only. Consecutive removals are carried out together, at the next call that uses the remaining
+    // objects.
     /// Adds a material, which bodies name in BodySettings::material.
     MaterialHandle add_material(const MaterialSettings& material);
     /// Adds a body from a mesh of tetrahedra. The mesh is copied. Overlaps are found later, by settle_start().
@@ -253,16 +254,16 @@ public:
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
     /// its mesh. Plastic flow, viscous strains, sleep, and the stored impulses of its contacts and joints are reset.
-    /// Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even if it was frozen
-    /// in it. Settings::start_overlaps applies to new overlaps.
+    /// Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even a deformed one in
+    /// which set_dynamics() froze it. Settings::start_overlaps applies to new overlaps.
     void reset(BodyHandle body);
     void reset(BodyHandle body, const Pose& pose);
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
     void reset();
     /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
-    /// stay valid; handles of objects that were added to this world later become stale. However, if objects were added
-    /// to `saved` as well, such a handle may name one of those. Threads and callbacks of this world stay. Whether
-    /// forces are measured is taken from `saved`.
+    /// stay valid; handles of objects that were added to this world after the cloning become stale. However, if objects
+    /// were added to `saved` as well, such a handle may name one of them by mistake. Threads and callbacks of this
+    /// world stay. Whether forces are measured is taken from `saved`.
     void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
@@ -313,7 +314,8 @@ public:
     /// Contacts of the last step and contacts between sleeping bodies, in a fixed order. Contacts of objects that were
     /// removed since are omitted. Empty if the last step was refused.
     std::span<const Contact> contacts() const;
-    /// Counters of the run and measures of the present state. The computation takes a pass over all tables.
+    /// Counters of the run and measures of the present state. The computation takes a pass over all bodies and
+    /// elements.
     WorldReport report() const;
     /// Kinetic, elastic and potential energy of all bodies now, and the energy dissipated since the start [J].
     Energy energy() const;

@@ -61,7 +61,7 @@ private:
     /// connection is broken. Nothing more can be sent then, as the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // result of the library for a message without data: the length of its header
-        mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
+        mg_lock_connection(connection_);   // so that the library sends no ping after an incomplete message
         const int sent = mg_websocket_write(connection_, opcode, bytes.data(), bytes.size());
         broken_ = sent < 0 || static_cast<std::size_t>(sent) != (bytes.empty() ? header : bytes.size());
         if (broken_) shutdown(socket_, SHUT_RDWR);
@@ -103,8 +103,8 @@ LiveRequest request_of(const mg_request_info& info) {
     return request;
 }
 
-/// Returns the port of one end of a socket; 0 if `socket` is not connected or no socket. `call`: getsockname for this
-/// end, getpeername for the other end.
+/// Returns a port of a connected socket; 0 if `socket` is not connected or is no socket. `call`: getsockname for the
+/// local port, getpeername for the remote port.
 template <class Call>
 int port_of(int socket, Call&& call) {
     sockaddr_in place{};
@@ -116,7 +116,7 @@ int port_of(int socket, Call&& call) {
 /// Returns the socket of a connection, for which the library has no function; -1 if it is not found. `port`: port of
 /// the server.
 int socket_of(const mg_connection* connection, int port) {
-    constexpr long most_sockets = 1 << 16;  // socket numbers that are tried
+    constexpr long most_sockets = 1 << 16;  // largest number of file descriptors to try
     const long limit = sysconf(_SC_OPEN_MAX);
     const int end = static_cast<int>(limit > 0 ? std::min(limit, most_sockets) : most_sockets);
     const int remote = mg_get_request_info(connection)->remote_port;
@@ -125,7 +125,7 @@ int socket_of(const mg_connection* connection, int port) {
     return -1;
 }
 
-/// Connects to a port of this machine, and closes the connection.
+/// Connects to a port of this machine and closes the connection, to wake the thread that accepts connections there.
 void connect_once(int port) {
     const int own = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (own < 0) return;
@@ -213,7 +213,7 @@ void LiveServer::Impl::ready(mg_connection* connection, void*) {
         link->client = server.hub.join(*link);
         if (link->client == 0) {
             link->close();
-            server.close_silent_links();  // the page tries again
+            server.close_silent_links();  // makes room for the next attempt of the page to connect
             return false;
         }
         mg_set_user_connection_data(connection, link.release());
@@ -226,7 +226,7 @@ void LiveServer::Impl::ready(mg_connection* connection, void*) {
 int LiveServer::Impl::receive(mg_connection* connection, int bits, char* data, std::size_t size, void*) {
     constexpr int keep = 1, close = 0, final_text = 0x80 | MG_WEBSOCKET_OPCODE_TEXT;
     const SocketLink* link = link_of(connection);
-    // Only whole messages of text are commands. Browsers do not split messages of this length.
+    // Commands are text messages in one WebSocket frame. Browsers do not split messages as short as commands.
     if (!link || bits != final_text || size > longest_message) return close;
     return guarded(close, [&] {
         of(connection).hub.receive(link->client, {data, size});

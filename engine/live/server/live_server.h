@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Serves the page, and connects browsers to the hub by WebSockets. Its threads call the functions of the hub for
-/// connections.
+/// Serves the page, and connects browsers to the hub by WebSockets. Its threads call join(), receive() and leave() of
+/// the hub.
 class LiveServer {
 public:
     /// Throws SceneError if the port is in use or cannot be opened, or if this build has no three.js.

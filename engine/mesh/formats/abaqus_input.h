@@ -10,7 +10,7 @@ namespace skerry::mesh {
 /// A keyword line such as "*ELEMENT, TYPE=C3D4, ELSET=BEAM", and the position of its data lines.
 struct AbaqusBlock {
     std::string keyword;                           // upper case, without the asterisk
-    std::map<std::string, std::string> parameter;  // by its name in upper case; empty for a parameter without a value
+    std::map<std::string, std::string> parameter;  // value by name in upper case; empty if none is given
     std::size_t place = 0;                         // position of the keyword line in the file [bytes]
     std::size_t first = 0, end = 0;                // begin and end of its data lines in the file [bytes]
 

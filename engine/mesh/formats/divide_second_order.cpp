@@ -48,7 +48,7 @@ void add_parts(const std::array<Index, 3>& corner, const std::array<Index, 3>& m
     parts.insert(parts.end(), std::begin(all), std::end(all));
 }
 
-/// Divides each face of a set whose three edges have middle nodes into four. Other faces stay whole.
+/// Divides every face in the sets that has middle nodes on all three edges into four faces. Other faces stay whole.
 void divide_faces(const RawMesh& mesh, std::map<std::string, MeshSet>& sets) {
     if (std::ranges::all_of(sets, [](const auto& item) { return item.second.faces.empty(); })) return;
     MiddleNodes middle_of;
@@ -78,7 +78,7 @@ void divide_faces(const RawMesh& mesh, std::map<std::string, MeshSet>& sets) {
 
 void divide_tetrahedra(RawMesh& mesh) {
     std::vector<std::array<Index, 4>> parts;
-    std::vector<Index> first;  // number of the first part of each tetrahedron, then the number of all parts
+    std::vector<Index> first;  // index in `parts` of each tetrahedron's first part; last entry: the number of parts
     mesh.middle.resize(mesh.tetrahedra.size(), linear_tetrahedron);
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         first.push_back(static_cast<Index>(parts.size()));

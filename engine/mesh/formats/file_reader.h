@@ -85,7 +85,7 @@ public:
     }
     void skip_bytes(std::size_t count, const char* field);
     /// Continues behind the next occurrence of `mark` that white space or the end of the file follows. Binary numbers
-    /// may precede `mark` directly. Returns false and stays if there is no such occurrence.
+    /// may precede `mark` directly. Returns false and keeps the position if there is no such occurrence.
     bool skip_behind(std::string_view mark);
 
     // Numbers of formats that have a text form and a binary form.

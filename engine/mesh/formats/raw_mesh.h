@@ -37,7 +37,8 @@ struct RawMesh {
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
     std::map<std::string, MeshSet> sets;                // faces have 3 corners, also those of second order
     std::map<std::string, std::vector<Vec3>> vectors;   // by name; one vector for each tetrahedron
-    // for an .obj or .ply file: texture coordinates, names of materials, and their indices by triangle
+    // for an .obj or .ply file: texture coordinates and names of materials, and the indices of each triangle into both
+    // lists
     VisualSurface visual;
     std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a
                                      // node twice
@@ -54,7 +55,8 @@ std::string elements_text(const RawMesh& mesh);
 class NodeNumbers {
 public:
     void reserve(std::size_t count) { row_.reserve(count); }
-    /// Assigns `number` to the next node. Throws SceneError if another node has the same number.
+    /// Assigns `number` to the node that is added to RawMesh::nodes next. Throws SceneError if another node has the
+    /// same number.
     void add(std::int64_t number, const FileReader& reader);
     /// Returns the index of the node with the given number. Throws SceneError if there is no such node.
     Index row(std::int64_t number, const FileReader& reader) const;
@@ -79,8 +81,8 @@ void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMe
 /// Converts a mesh of linear elements to second order. The new nodes are appended to `nodes`.
 void add_middle_nodes(RawMesh& mesh);
 
-/// Divides each tetrahedron of second order into eight linear ones, and each triangle of second order into four. These
-/// parts use all nodes, and have the labels, vectors and sets of the divided element. Adds a sentence to `notes`.
+/// Divides each tetrahedron of second order into eight linear ones, and each triangle of second order into four. The
+/// parts use all nodes of the divided element, and have its labels, vectors and sets. Adds a sentence to `notes`.
 void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
@@ -94,7 +96,7 @@ std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const
 RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1
 RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructured grids or polygons
 RawMesh read_vtu(FileReader& reader);   // reads VTK XML files with unstructured grids
-// reads TetGen files .node and .ele of the same name; `path` may name either file
+// reads TetGen files .node, .ele and (if it exists) .face of the same name; `path` names the .node or .ele file
 RawMesh read_tetgen(const std::string& path);
 RawMesh read_abaqus(FileReader& reader);
 RawMesh read_medit(FileReader& reader);  // reads Medit files .mesh and .meshb

@@ -13,7 +13,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Number of nodes of an element type. For types that are not read it is 0, and `name` is the plural for the user.
+/// Number of nodes of an element type. For types that are not read it is 0, and `name` is a plural noun for messages.
 struct AbaqusKind {
     std::size_t nodes = 0;
     std::string name{};
@@ -82,14 +82,16 @@ public:
     }
 
 private:
-    /// Blocks of one scope, see AbaqusScope, and the block *INSTANCE whose motion moves the nodes of the scope.
+    /// Blocks of one scope (see AbaqusScope), and the block *INSTANCE that holds the translation and rotation of its
+    /// nodes.
     struct Instance {
         std::string prefix{};
         std::vector<const AbaqusBlock*> blocks{};
         const AbaqusBlock* pose = nullptr;  // null: the nodes are not moved
     };
 
-    /// Refuses keywords that create nodes or elements by other means than by listing them.
+    /// Refuses keywords and parameters by which a file defines nodes, elements or sets without listing them, and
+    /// coordinates that are not Cartesian.
     void require_plain(const AbaqusBlock& block) {
         static const std::set<std::string> makers{"NGEN",  "NFILL",  "NCOPY",  "NMAP",
                                                   "ELGEN", "ELCOPY", "SYSTEM", "INCLUDE"};
@@ -260,8 +262,8 @@ private:
         return found->second;
     }
 
-    /// Adds the members that an entry of a row names: a number, or the name of an earlier set. In either case the name
-    /// of an instance and a dot may precede.
+    /// Adds the members that an entry of a row names: a number, or the name of an earlier set. The name of an instance
+    /// and a dot may precede the number or the name.
     void add_members(const std::string& entry, const AbaqusScope& scope, const Sets& sets,
                      std::vector<std::size_t>& to) {
         const auto begins_number = [](std::string_view text) {
@@ -414,8 +416,8 @@ private:
             if (!set.internal) mesh_.sets[set.name].nodes.assign(set.members.begin(), set.members.end());
     }
 
-    /// Adds the sets of elements to the mesh. If a set of other nodes than those of the elements has the same name,
-    /// "_elements" is appended to the name.
+    /// Adds the element sets to the mesh. An element set replaces a node set of the same name if its elements have
+    /// exactly these nodes. If they have other nodes, "_elements" is appended to the name of the element set.
     void take_element_sets() {
         for (const auto& [key, set] : element_sets_) {
             if (set.internal) continue;

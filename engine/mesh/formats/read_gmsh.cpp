@@ -13,10 +13,10 @@ constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 
 bool is_gmsh_tetrahedron(std::int64_t type) {
-    return type == 4 || type == 11;  // codes of the first and the second order
+    return type == 4 || type == 11;  // codes of first and second order elements
 }
 bool is_triangle(std::int64_t type) {
-    return type == 2 || type == 9;  // codes of the first and the second order
+    return type == 2 || type == 9;  // codes of first and second order elements
 }
 bool is_curved_tetrahedron(std::int64_t type) {
     return (type >= 29 && type <= 31) || (type >= 71 && type <= 75);
@@ -68,7 +68,8 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
     rows.clear();
     for (const std::int64_t number : node_numbers) rows.push_back(numbers.row(number, reader));
     if (type == 11) std::swap(rows[8], rows[9]);  // Gmsh lists the middle of edge 23 before that of edge 13
-    // Version 2 writes a tetrahedron in several groups once for each group, one after the other.
+    // In version 2, a tetrahedron that belongs to several groups has one row for each group. These rows follow each
+    // other.
     const bool again = is_gmsh_tetrahedron(type) && !mesh.tetrahedra.empty() &&
                        std::ranges::equal(mesh.tetrahedra.back(), std::span(rows).first(4)) &&
                        mesh.tags.back().elementary == tags.elementary && mesh.tags.back().physical != tags.physical;

@@ -8,8 +8,8 @@
 
 namespace skerry::mesh {
 
-/// Numbers in the file: of the physical group of an element (0: none), of its elementary (geometric) entity, and of the
-/// element itself.
+/// Numbers that the file gives to the physical group of an element (0: none), to its elementary (geometric) entity, and
+/// to the element itself.
 struct GmshTags {
     std::int64_t physical = 0, elementary = 0, number = 0;
 };
@@ -25,7 +25,8 @@ struct GmshMesh : RawMesh {
     std::vector<GmshTags> tags;
     std::map<GmshEntity, MeshSet> groups;           // elements of each physical group
     std::map<GmshEntity, std::string> group_names;  // names of physical groups that have one
-    // by name of a view of element data with values 0 and 1 only: numbers of the elements with the value 1
+    // for each view of element data that has only the values 0 and 1: its name, and the numbers of the elements with
+    // the value 1
     std::map<std::string, std::vector<std::int64_t>> flagged;
     std::vector<Index> element_rows;  // nodes of the element that is being read
 };
@@ -36,14 +37,14 @@ void read_gmsh_names(FileReader& reader, GmshMesh& mesh);
 /// are ignored.
 void read_gmsh_element_data(FileReader& reader, GmshMesh& mesh);
 
-/// These functions read the sections $Nodes ($NOD in version 1) and $Elements ($ELM in version 1) of versions 1 and 2.
-/// They start after the line with the section's name.
+/// The next three functions read the sections $Nodes ($NOD in version 1) and $Elements ($ELM in version 1) of versions
+/// 1 and 2. They start after the line with the section's name.
 void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, GmshMesh& mesh);
 void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMesh& mesh);
 void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, GmshMesh& mesh);
 
-/// These functions read the sections of version 4.1. read_gmsh4_entities reads $Entities and returns the physical
-/// groups of all entities that are in groups.
+/// The next three functions read the sections of version 4.1. read_gmsh4_entities reads $Entities and returns the
+/// physical groups of all entities that are in groups.
 GmshEntities read_gmsh4_entities(FileReader& reader, bool binary);
 void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, GmshMesh& mesh);
 void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshEntities& entities,

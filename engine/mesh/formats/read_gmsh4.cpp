@@ -46,7 +46,7 @@ Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning)
     return block;
 }
 
-/// Reads the next word of a node or element. Throws SceneError if a new section begins there, because then rows are
+/// Reads the next word of a row of the section. Throws SceneError if a new section begins there, because then rows are
 /// missing.
 std::string_view row_word(FileReader& reader, const char* expected) {
     const std::string_view text = reader.word(expected);

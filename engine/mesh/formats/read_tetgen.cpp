@@ -88,9 +88,9 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     require_end(reader, "nodes");
 }
 
-/// Entry a is the place of node a of a .ele row in the order of this engine: four corners, then RawMesh::middle. With
-/// its option -o2 TetGen lists the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its
-/// tables edge2ver, orgpivot and destpivot).
+/// Entry a is the index that node a of a .ele row has in the node order of this engine: four corners, then
+/// RawMesh::middle. With its option -o2 TetGen lists the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20
+/// after the corners (its tables edge2ver, orgpivot and destpivot).
 constexpr std::array<std::size_t, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {

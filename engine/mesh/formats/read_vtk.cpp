@@ -118,7 +118,7 @@ private:
         return found->type;
     }
 
-    /// Skips the line end between the counts and the rows of binary data. In text files reading skips it anyway.
+    /// Skips the line end between the counts and the rows of binary data. In text files, word() skips it.
     void begin_rows() {
         if (binary_) reader_.line();
     }
@@ -248,9 +248,9 @@ private:
         cells_.offset.assign(1, 0);
     }
 
-    /// Reads the data arrays of points or cells, and stores labels, whole numbers, and vectors of cells. Returns true
-    /// if another section of data follows. Returns false if reading can stop: at the end of the file, or at unknown
-    /// content, after which no mesh data follow.
+    /// Reads the data arrays of points or cells; read_array() says which of them are stored. Returns true if another
+    /// section of data follows. Returns false if reading can stop: at the end of the file, or at unknown content, after
+    /// which no mesh data follow.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
         const std::size_t rows = of_cells ? cells_.type.size() : mesh_.nodes.size();
@@ -354,7 +354,7 @@ private:
         if (components != 1 || (real && !labels)) return skip_rows(rows, components, type);
         std::vector<int> numbers;
         bool whole = true;
-        unsigned bits = 0;  // present byte: the first of its eight values is in the highest bit
+        unsigned bits = 0;  // byte with eight values, the first of them in the highest bit
         for (std::size_t i = 0; i < rows; ++i) {
             reader_.set_row(of_cells ? "cell" : "point", i + 1, rows);
             std::optional<int> number;

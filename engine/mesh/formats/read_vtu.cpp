@@ -42,7 +42,8 @@ private:
         const XmlTag file = next_tag(reader_);
         if (file.name != "VTKFile") complain(file, {}, "the tag " + in_quotes(file.name), "<VTKFile ...>");
         read_form(file);
-        std::string section;  // last of Points, Cells, CellData, PointData, FieldData: the section of an array
+        // section to which the next arrays belong: Points, Cells, CellData, PointData or FieldData
+        std::string section;
         while (true) {
             const XmlTag tag = next_tag(reader_);
             if (tag.name == "VTKFile" && !tag.opens) break;
@@ -206,8 +207,8 @@ private:
         }
     }
 
-    /// Appends the whole numbers of a piece to the arrays of `all` with equal names. `before`: number of points or
-    /// cells of earlier pieces. An array that an earlier piece lacks is ignored, because it would have gaps.
+    /// Appends each array of whole numbers of a piece to the array of the same name in `all`. `before`: number of
+    /// points or cells of earlier pieces. An array that an earlier piece lacks is ignored, because it would have gaps.
     void take_data(const std::vector<VtkXmlArray>& arrays, std::size_t count, std::size_t before,
                    std::vector<VtkArray>& all) {
         for (const VtkXmlArray& array : arrays) {

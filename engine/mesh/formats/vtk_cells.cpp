@@ -74,8 +74,8 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
 namespace {
 
 /// Calls add(set, row) for every row of an array with a value other than 0. A flag array (0 and 1) makes one set with
-/// its name; other arrays make one set for each value. An array of different values only numbers its rows and makes no
-/// set.
+/// its name; other arrays make one set for each value. An array in which no value occurs twice only numbers its rows,
+/// and makes no set.
 void for_each_member(const VtkArray& array, RawMesh& mesh, auto&& add) {
     const std::set<int> values(array.value.begin(), array.value.end());
     const bool is_flag = std::ranges::all_of(values, [](int value) { return value == 0 || value == 1; });

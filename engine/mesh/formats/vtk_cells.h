@@ -24,7 +24,8 @@ struct VtkCells {
     std::vector<std::int64_t> type;
     std::vector<int> label;  // label of each cell; empty: no labels
     std::vector<VtkArray> point_data, cell_data;
-    std::map<std::string, std::vector<Vec3>> vectors;  // by array name: vectors of cells; incomplete ones are ignored
+    // by array name: a vector for each cell; an array with fewer vectors is ignored
+    std::map<std::string, std::vector<Vec3>> vectors;
 };
 
 /// True if cell data of this name are labels.

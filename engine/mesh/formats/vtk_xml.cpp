@@ -125,9 +125,8 @@ std::uint64_t read_header(ByteSource& source, const VtkXmlForm& form) {
                             : number_from<std::uint32_t>(bytes.data(), form.foreign_bytes);
 }
 
-/// Reads and decompresses blocks. The file has four headers: number of blocks, size of a block, size of the last block
-/// (0 if it is complete), and compressed size of each block. The compressed blocks follow. `expected`: decompressed
-/// size in total [bytes].
+/// Reads and decompresses blocks. A header precedes them: number of blocks, size of a block, size of the last block (0
+/// if it is complete), and the compressed size of each block. `expected`: decompressed size in total [bytes].
 std::string read_blocks(ByteSource& source, const VtkXmlForm& form, std::size_t expected) {
     constexpr std::size_t best_ratio = 1032;  // largest compression ratio of zlib, to refuse damaged sizes
     const std::uint64_t count = read_header(source, form), size = read_header(source, form),

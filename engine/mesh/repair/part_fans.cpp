@@ -47,8 +47,8 @@ PartedMesh part_fans(const Mesh& mesh) {
         if (faces[f].node == faces[f - 1].node)
             for (std::size_t i = 0; i < 3; ++i) fans.join(faces[f].corner[i], faces[f - 1].corner[i]);
     std::vector<Index> first_fan(mesh.nodes.size(), no_index);  // number of the first fan found at each node
-    // Node of each fan after the split, by number of the fan: the number of its first corner, which is its root in the
-    // union-find structure.
+    // Node of each fan after the split. A fan is numbered by its first corner, which is its root in the union-find
+    // structure.
     std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);
     std::vector<bool> has_more(mesh.nodes.size());
     for (std::size_t c = 0; c < node_of.size(); ++c) {

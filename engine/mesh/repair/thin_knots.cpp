@@ -21,8 +21,8 @@ using Corners = std::array<Vec3, 3>;
 // Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller increase does
 // not justify moving the surface.
 constexpr Real least_gain = 1.1;
-// Largest allowed distance of sample points of the old surface from the new one and of the new from the old, as a
-// fraction of the tolerance. The rest of the tolerance is a margin for the surface between the sample points.
+// Largest allowed distance of sample points of either surface (original or changed) from the other one, as a fraction
+// of the tolerance. The rest of the tolerance is a margin for the surface between the sample points.
 constexpr Real share_of_tolerance = 0.8;
 // Smallest cosine of the angle by which a change may rotate the normal of a triangle (60 degrees).
 constexpr Real least_turn = 0.5;
@@ -283,12 +283,12 @@ private:
     std::vector<Vec3> nodes_;
     std::vector<Triangle> triangles_;  // all triangles, including removed ones, for which alive_ is false
     std::vector<bool> alive_;
-    // Sample points of the original surface. Each is in the list of the triangle of the changed surface that is nearest
-    // to it.
+    // Sample points of the original surface, by triangle of the changed surface. When a change removes a triangle, its
+    // points go to the nearest triangles that replace it.
     std::vector<std::vector<Vec3>> samples_;
     std::vector<std::vector<Index>> around_;  // numbers of the triangles at each node
-    // Pairs (altitude, triangle number) of all flat triangles, flattest first. Equally flat triangles are ordered by
-    // number.
+    // Pairs (altitude, triangle number) of the flat triangles that run() still has to examine, flattest first. Equally
+    // flat triangles are ordered by number.
     std::set<std::pair<Real, Index>> flat_;
 };
 

@@ -34,8 +34,8 @@ public:
     NearestTriangle nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const;
 
 private:
-    /// Improves `nearest` by the triangles under row `row` of bvh_. `facing`: see nearest_facing; nullptr: all
-    /// triangles.
+    /// Replaces `nearest` if a triangle in the subtree below row `row` of bvh_ is nearer. `facing`: see nearest_facing;
+    /// nullptr: all triangles.
     void search(Index row, const Vec3& point, const Vec3* facing, NearestTriangle& nearest) const;
     bool faces(Index triangle, const Vec3& point, const Vec3& facing) const;
 

@@ -10,7 +10,7 @@
 namespace skerry::mesh {
 namespace {
 
-using ProfilePoint = std::array<Real, 2>;  // radius, z
+using ProfilePoint = std::array<Real, 2>;  // radius and z [m]
 
 // height of a layer of prisms between two discs, divided by ring spacing; this ratio maximises the smallest altitude of
 // the tetrahedra
@@ -83,8 +83,8 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
 std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing, int most_rings) {
     const Real narrow = point_radius * spacing;
     std::vector<Real> planes = find_planes(profile, spacing);
-    // A pointed end is a single point. Neighbouring planes with a radius below `narrow` would only produce tiny
-    // elements, so they are removed.
+    // A pointed end is a single point. If the outline is narrower than `narrow` also at the planes next to it, these
+    // planes would only produce tiny elements, so they are removed.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
     while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)

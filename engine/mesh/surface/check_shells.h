@@ -9,7 +9,7 @@
 
 namespace skerry::mesh {
 
-/// Last words of fault_text for SurfaceFaultKind::unlikely_size. The scene reader recognises this fault by them.
+/// Last words of fault_text for SurfaceFaultKind::unlikely_size. The scene reader recognises this fault by these words.
 inline constexpr std::string_view other_unit = "probably in another unit of length";
 
 /// Performs check_surface without the search for crossings, slivers and thin walls. `keep_walls`: see
@@ -17,8 +17,8 @@ inline constexpr std::string_view other_unit = "probably in another unit of leng
 SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name,
                            bool keep_walls = false);
 
-/// Performs check_surface, but does not drop a shell close to another one of the same orientation. If inner shells
-/// bound voids, two such shells are the sides of a thin wall.
+/// Performs check_surface, but keeps a shell that nearly coincides with another one of the same orientation: if inner
+/// shells bound voids, these two shells are the sides of a thin wall.
 SurfaceReport check_surface_with_walls(const SurfaceMesh& surface, Real tolerance, const std::string& name);
 
 /// Distance up to which nodes or shells of a surface count as coincident [m].

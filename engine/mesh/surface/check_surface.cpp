@@ -98,7 +98,7 @@ namespace {
 
 /// Adds the faults that check_shells does not search for.
 SurfaceReport with_crossings(SurfaceReport report) {
-    constexpr Real largest = 20, smallest = 1e-6;  // usual sizes of bodies [m]
+    constexpr Real largest = 20, smallest = 1e-6;  // limits of the diagonal of usual bodies [m]
     if (report.cleaned.triangles.empty()) return report;
     find_crossings(report, rounding_distance(report));
     using enum SurfaceFaultKind;

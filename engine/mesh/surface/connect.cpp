@@ -14,8 +14,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Divides the given triangles into patches that are connected by edges. Marks all triangles of each patch that has an
-/// edge at which an odd number of triangles of the surface meet. `dropped` triangles are not counted.
+/// Divides the given triangles into patches that are connected by edges. Returns true for the triangles of each patch
+/// with an edge at which an odd number of triangles of the surface meet, not counting `dropped` ones.
 std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
     UnionFind patches;
     patches.start(triangles.size());
@@ -55,7 +55,7 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
         fitting.join(a + 1, b + 1 - same);
     });
     struct Patch {
-        Index triangles = 0, opposite = 0;  // number of triangles, and of those that do not fit the first one
+        Index triangles = 0, opposite = 0;  // number of triangles, and of those oriented opposite to the first one
     };
     std::vector<Patch> patches(triangles.size());  // indexed by the first triangle of the patch
     const auto roots_of = [&](std::size_t t) {

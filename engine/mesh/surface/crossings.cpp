@@ -77,8 +77,8 @@ PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
     return PairFault::overlap;
 }
 
-/// Length of the ray from `origin`, a point of triangle `from`, to the first triangle that does not touch this
-/// triangle; at most `limit` [m].
+/// Length of the ray from `origin`, a point of triangle `from`, to the first triangle that shares no node with `from`;
+/// at most `limit` [m].
 Real free_path(const SurfaceMesh& surface, const BoxTree& tree, Index from, const Vec3& origin, const Vec3& direction,
                Real limit) {
     Real nearest = limit;

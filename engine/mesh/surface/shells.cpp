@@ -147,7 +147,8 @@ private:
     std::vector<Index> passed_;  // shells whose triangles the ray of the present point crosses
 };
 
-/// Number of triangles of a shell behind which the same other shells contain the volume, and the first of them.
+/// Triangles of one shell for which the point just behind the triangle lies in the same other shells: their number, and
+/// the first of them. The key in SurroundedTriangles is the shell with the list of these other shells.
 struct Surrounded {
     std::size_t count = 0;
     Index first = no_index;
@@ -175,7 +176,8 @@ SurroundedTriangles surrounded_triangles(const SurfaceReport& report, std::span<
 
 /// Sets `around` of each shell to the smallest shell of larger volume that contains all of its triangles.
 void nest(SurfaceReport& report, const SurroundedTriangles& surrounded) {
-    std::map<std::pair<Index, Index>, std::size_t> inside;  // number of triangles of shell first in shell second
+    // key (a, b): number of triangles of shell a that lie in shell b
+    std::map<std::pair<Index, Index>, std::size_t> inside;
     for (const auto& [key, group] : surrounded)
         for (const Index other : key.second) inside[{key.first, other}] += group.count;
     for (const auto& [pair, count] : inside) {

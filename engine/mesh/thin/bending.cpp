@@ -7,15 +7,17 @@ namespace skerry::mesh {
 
 namespace {
 
-// Ratio of the true excess of bending energy to the computed one. The computed energy holds for nodes at the positions
-// of exact bending; nodes that are free to move find a state of lower energy. Strips of one or two layers of cells,
-// solved statically, have factors of 0.65 to 1; the smallest ratio belongs to strips that are two flat cells wide.
+// Ratio of true to computed excess, where excess is the bending energy of the elements minus the exact one. The
+// computed energy holds for nodes at the positions of exact bending; nodes that are free to move find a state of lower
+// energy. Strips of one or two layers of cells, solved statically, have ratios of 0.65 to 1; the smallest belongs to
+// strips that are two flat cells wide.
 constexpr Real remaining_excess = 0.8;
 
-/// Displacements of pure bending with the curvature 1/m, whose neutral axis passes through a column (Saint-Venant).
+/// Displacements of pure bending (Saint-Venant) with a curvature of 1 per metre. The neutral axis passes through a
+/// column.
 struct Bending {
     std::size_t part, column;
-    Vec3 middle;                   // point of zero strain [m]
+    Vec3 middle;                   // point on the neutral axis [m]
     Vec3 tangent, across, normal;  // orthonormal: axis of the bent part, axis of rotation, and direction of the column
     Real poisson_ratio, young_modulus;
 
@@ -84,8 +86,8 @@ Real neutral_distance(const ThinColumn& column, const Surroundings& nearby,
     return moment / stiffness;
 }
 
-/// Energy of exact bending with the curvature 1/m in a tetrahedron: int E z^2 / 2 dV, with z measured from the neutral
-/// axis [J].
+/// Energy in a tetrahedron of exact bending with a curvature of 1 per metre: int E z^2 / 2 dV, with z measured from the
+/// neutral axis [J].
 Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> position, const Bending& bending) {
     Real sum = 0, squares = 0;
     for (const Index n : tetrahedron) {
@@ -105,7 +107,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
     // Several columns of a part may cross a tetrahedron. The first of these columns defines the neutral axis and the
     // directions of bending in the tetrahedron.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
-    std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);  // energy by column: exact, elements [J]
+    // bending energy by column: exact one, and that of the elements [J]
+    std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const BentColumn& bent = columns[c];
         const ThinColumn& column = *bent.column;
@@ -130,8 +133,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
             }
     };
     // For each tetrahedron: number of elements that include it and carry the shear part of the stress or both parts
-    // [0], and number of those that carry only the volumetric part [1]. The volume is divided equally among the
-    // elements of each kind.
+    // (entry 0), and number of those that carry only the volumetric part (entry 1). The volume is divided equally among
+    // the elements of each kind.
     std::vector<std::array<int, 2>> covered(nearby.tetrahedra.size(), {0, 0});
     for_each_share([&](std::size_t, std::size_t row, std::size_t kind) { ++covered[row][kind]; });
     for_each_share([&](std::size_t e, std::size_t row, std::size_t kind) {

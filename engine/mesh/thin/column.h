@@ -22,14 +22,15 @@ struct ThinColumn {
     Vec3 start, direction;             // start of the ray [m], and its unit vector
     Real area;                         // area of the first triangle [m^2]
     std::vector<Crossing> crossings;
-    // number of layers of cells, approximately: thickness over mean extent of a crossed tetrahedron along the ray
+    // number of layers of cells, approximately: thickness divided by the mean extent of the crossed tetrahedra along
+    // the ray
     Real layers;
 
     Real thickness() const { return crossings.back().end; }
 };
 
 /// Returns a column for each boundary triangle under which the mesh is thin: its thickness is at most twice the mean
-/// edge length of the crossed tetrahedra.
+/// edge length of the crossed tetrahedra, and the ray leaves nearly normal to the last triangle.
 std::vector<ThinColumn> thin_columns(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary);
 
 }  // namespace skerry::mesh

@@ -66,8 +66,8 @@ NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3
             near.beyond[static_cast<std::size_t>(faces[f].tetrahedron)][faces[f].corner] = face;
         } else if (std::ranges::all_of(faces[f].node,
                                        [&](Index n) { return place[static_cast<std::size_t>(n)] == outer; })) {
-            // A face that occurs once in this list is on the boundary if all of its nodes are. Otherwise the
-            // tetrahedron on its other side exists, but is not near the boundary.
+            // A face that only one of these tetrahedra has is on the boundary if all of its nodes are boundary nodes.
+            // Otherwise its other tetrahedron is not near the boundary, and therefore not in the list.
             near.on_boundary[row][corner] = true;
             near.boundary.push_back(face);
         }

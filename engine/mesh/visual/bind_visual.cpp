@@ -42,8 +42,8 @@ public:
     /// A point outside of the body follows the nearest triangle that faces the same way, so that surfaces on both sides
     /// of a gap follow different sides. If there is no such triangle nearby, the point follows the nearest triangle.
     MaterialPoint nearest(const Vec3& place, const Vec3& normal) const {
-        // Largest rounding error of barycentric coordinates. Without it a point on a face could be outside of both
-        // tetrahedra.
+        // Margin for rounding errors of barycentric coordinates. Without it, a point on a common face could be outside
+        // of both tetrahedra.
         constexpr Real rounding = 1e-9;
         MaterialPoint inside;
         Real best = -rounding;

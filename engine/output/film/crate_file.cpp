@@ -23,7 +23,7 @@ constexpr std::size_t header_reserved = 64;   // reserved zero bytes after the p
 constexpr std::uint32_t end_of_fields = ~0u;  // ends each list of field indices in the table of field sets
 
 /// Encodes bytes as an LZ4 block of literals, that is, without compression. A zero byte comes first: the format stores
-/// there the number of further blocks.
+/// there the number of blocks after the first.
 std::string literal_block(std::string_view bytes) {
     std::string out(1, '\0');
     constexpr std::size_t short_length = 15, long_step = 255;

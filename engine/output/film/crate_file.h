@@ -95,8 +95,8 @@ public:
         end_read();
         return values;
     }
-    /// Completes the file. `root`: the whole scene, of kind SpecKind::root. Its fields "properties" and "primChildren"
-    /// are added here, not by the caller.
+    /// Completes the file. `root`: the whole scene, of kind SpecKind::root. close() adds the fields "properties" and
+    /// "primChildren", which list the children of a spec; the caller must not.
     void close(CrateSpec root);
 
 private:

@@ -11,8 +11,8 @@ namespace skerry {
 
 namespace {
 
-// Colours as 0xRRGGBB (sRGB): of a quantity from 0 to its top value, of bodies by number, and of colliders. `ramp` and
-// `body_colors` equal the colours of stress and of bodies on web pages (player/data/page_colors.js).
+// Colours as 0xRRGGBB (sRGB). `ramp` extends from the value 0 of a quantity to its top value. `body_colors` are given
+// to the bodies in turn. Both lists equal those of web pages (player/data/page_colors.js).
 constexpr std::uint32_t ramp[] = {0x8f8ad6, 0xb27cd0, 0xcf72b8, 0xe56d92, 0xf27f67, 0xf9a64a, 0xf7dd53};
 constexpr std::uint32_t body_colors[] = {0x6fa8dc, 0xe6a15c, 0x7fbf7b, 0xd98cb3, 0xb8a6e0,
                                          0xd8c25f, 0x6cc5c1, 0xe07f72, 0xa9b665, 0x8f9fb8};

@@ -44,7 +44,7 @@ using Vec3f = std::array<float, 3>;
 std::vector<Vec3f> relative_to(const Vec3& origin, std::span<const Vec3> points);
 Vec3 mean_of(std::span<const Vec3> points);
 
-/// Name and unit of the quantity that colours show; also the name of its vertex attribute.
+/// Name and unit of the quantity that colours show. The vertex attribute that holds its values has the same name.
 struct Quantity {
     const char *name, *unit;
 };

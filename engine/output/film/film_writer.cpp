@@ -79,7 +79,7 @@ Real FilmWriter::close() {
 
 namespace {
 
-/// Writes the film of a run. FilmWriter is made in open(), which gets the frame step.
+/// Writes the film of a run. FilmWriter is made only in open(), because it needs the frame step of the run.
 class FilmOutput final : public Writer {
 public:
     FilmOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)

@@ -113,7 +113,8 @@ private:
         return json_[list].size() - 1;
     }
 
-    /// Appends bytes to the binary part, and returns the index of the new buffer view. `target`: its use, or 0.
+    /// Appends bytes to the binary part, and returns the index of the new buffer view. `target`: target_vertices,
+    /// target_indices, or 0 for other data.
     std::size_t view(std::string_view bytes, int target) {
         pad(binary_, '\0');
         Json view = object_of({{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}});

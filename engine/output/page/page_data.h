@@ -23,8 +23,8 @@ public:
     std::string packed_frames() const { return frames_.packed(); }
     /// Distribution of the values of each displayed field. The number of fields is page_field_count.
     std::span<const Quantile> fields() const { return fields_; }
-    /// Distribution of the norms of the contact forces, and distribution of the absolute values of the forces of lines
-    /// [N].
+    /// force(): distribution of the norms of the contact forces [N]. line_force(): distribution of the absolute values
+    /// of the forces of lines [N].
     const Quantile& force() const { return force_; }
     const Quantile& line_force() const { return line_force_; }
     const Vec3& gravity() const { return gravity_; }

@@ -58,7 +58,7 @@ public:
     std::span<const PageCollider> colliders() const { return colliders_; }
     std::span<const PageLine> lines() const { return lines_.lines(); }
 
-    /// Values of each body of the last frame by field and vertex, in the order of the bodies of the frame.
+    /// Values of one body in the last frame, by field and vertex. values() has the order of the bodies in the frame.
     struct BodyValues {
         Index number = 0;     // number of the body in the stream
         bool is_new = false;  // true in the first frame of the body

@@ -14,7 +14,7 @@ struct ForceSum {
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();
     // Sum of the magnitudes of the normal impulses [N s], largest force [N], and duration of the sums [s].
     Real pressing = 0, largest = 0, seconds = 0;
-    bool measured = false;  // true if a call of advance was long enough to measure the force
+    bool measured = false;  // true if at least one call of advance in this time was long enough to measure the force
     Index contacts = 0;
 
     void add(const ForceReport& report);
@@ -27,8 +27,8 @@ struct TrackedProbe {
     ForceSum force{};
 };
 
-// Each of the following functions throws a SceneError that names the probe if the world lacks an object or a node of
-// the probe.
+// check_probes(), add_forces() and put_row() throw a SceneError that names the probe if the world lacks an object or a
+// node of the probe.
 
 /// Checks that the names of the probes are valid and distinct, and that the world has the objects and nodes that the
 /// probes refer to.

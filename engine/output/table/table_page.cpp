@@ -19,8 +19,8 @@ std::string table_page(const std::string& title, std::string data) {
     for (std::size_t at = data.find("</"); at != std::string::npos; at = data.find("</", at))
         data.replace(at, 2, "<\\/");
     std::string page(table_page_html);
-    // @DATA@ is replaced first because @TITLE@ comes before it in the page. The search for @TITLE@ then cannot find a
-    // text in the data.
+    // @DATA@ is replaced first. @TITLE@ comes before it in the page, so the search for @TITLE@ finds the field of the
+    // page even if the data contain this text.
     put_in("@DATA@", data, page);
     put_in("@TITLE@", escape_markup(title), page);
     return page;

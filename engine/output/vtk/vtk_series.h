@@ -18,11 +18,10 @@ bool is_series_file(std::string_view file_name, std::string_view name);
 
 /// Writes up to five files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp, NAME_colliders_0000.vtp if a
 /// collider was added, removed or moved, NAME_lines_0000.vtp if the series has had joints, ties, cables or springs, and
-/// NAME_visual_0000.vtp if a body has a visual surface.
-/// The index NAME.pvd lists the files by time. Bodies, colliders and lines are numbered in the order of their first
-/// appearance, and their numbers never change. The first frame removes the files of an earlier series with the same
-/// name, and no other files. Throws SceneError if these files cannot be replaced. If a frame cannot be written
-/// completely, its files are removed.
+/// NAME_visual_0000.vtp if a body has a visual surface. The index NAME.pvd lists the files by time. Bodies, colliders
+/// and lines are numbered in the order of their first appearance, and their numbers never change. Before the first
+/// frame is written, the files of an earlier series with the same name are removed, and no other files. Throws
+/// SceneError if these files cannot be replaced. If a frame cannot be written completely, its files are removed.
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
@@ -61,14 +60,15 @@ private:
     std::map<BodyHandle, Index> body_number_;
     std::map<ColliderHandle, Index> collider_number_;
     std::map<decltype(LineFrame().key()), Index> line_number_;
-    std::vector<std::string> body_names_, collider_names_, line_names_;  // names by number
+    // names, indexed by body_number_, collider_number_ and line_number_
+    std::vector<std::string> body_names_, collider_names_, line_names_;
     std::vector<std::string> material_names_;
     // Node positions of each body in its first frame, from which displacements are measured [m].
     std::map<BodyHandle, std::vector<Vec3>> origin_;
     // Colliders in the last file of colliders, and their poses in this file.
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;
     std::string colliders_file_;       // name of the last file of colliders
-    std::optional<PlanePatch> patch_;  // displayed part of planes, from the first frame with bodies
+    std::optional<PlanePatch> patch_;  // displayed part of planes, determined in the first frame with bodies
     std::vector<Entry> entries_;
 };
 

@@ -18,8 +18,8 @@ struct SeriesBodies {
     const std::map<BodyHandle, std::vector<Vec3>>& origin;
 };
 
-/// Writes the visual surfaces of all bodies as one surface. A node at which texture coordinates jump becomes one point
-/// for each of its texture points.
+/// Writes the visual surfaces of all bodies as one surface. A node with several pairs of texture coordinates becomes
+/// one point per pair.
 void write_visuals(const Frame& frame, const SeriesBodies& bodies, const std::filesystem::path& file);
 
 }  // namespace skerry

@@ -67,7 +67,7 @@ std::string hash_of_text(const std::string& text) {
 }
 
 std::string command_line() {
-    std::string text = file_content("/proc/self/cmdline");  // each argument ends with a zero
+    std::string text = file_content("/proc/self/cmdline");  // each argument ends with a zero byte
     std::ranges::replace(text, '\0', ' ');
     return text;
 }
@@ -189,12 +189,12 @@ World& RunRanks::divide(Scene& scene, OwnerMap owners) {
     scene_ = &scene;
     if (!several()) return scene.world;
     part_.emplace(std::move(scene.world));
-    of_first({});  // throws on all ranks if one has failed; distribute() would wait for that rank
+    of_first({});  // throws on all ranks if one has failed; otherwise distribute() would wait for that rank forever
     divided_ = true;
     try {
         distribute(*part_, *ranks_, {.map = owners});
     } catch (const SceneError&) {
-        divided_ = false;  // distribute() throws this error on all ranks
+        divided_ = false;  // distribute() throws a SceneError on all ranks, so fail() can compare the errors
         throw;
     }
     return *part_;

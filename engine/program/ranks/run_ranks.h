@@ -37,13 +37,14 @@ struct RanksReport {
     double imbalance = 1;
     RankWork work{};  // empty if there is one rank
 
-    /// Overwrites the work in `world`, a report of rank 0 that counts only its own work, by the work of all ranks. Does
-    /// nothing if there is one rank.
+    /// Replaces the work in `world`, the report of rank 0, which counts only the work of this rank, by the work of all
+    /// ranks. Does nothing if there is one rank.
     void complete(WorldReport& world) const;
 };
 
-/// The ranks that make a run together. Rank 0 builds the world, which is then divided among them. Rank 0 alone reports
-/// and writes files, for which it gathers the whole world. In a run of one process no function communicates.
+/// The ranks (MPI processes) that share the simulation of one run. Rank 0 builds the world, which is then divided among
+/// them. Rank 0 alone reports and writes files, for which it gathers the whole world. In a run of one process no
+/// function communicates.
 class RunRanks {
 public:
     /// Joins the other processes that mpirun or srun has started with this process, if there are any. Throws SceneError
@@ -59,10 +60,11 @@ public:
     /// and read the same files. `scene`: scene file. `assignments`: changes of the scene by --set.
     void compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments);
     /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if one of them has failed
-    /// before, or has received a signal: the signal may have interrupted the search of rank 0 for a static equilibrium.
+    /// before, or has received a signal, because a signal may have interrupted the search of rank 0 for a static
+    /// equilibrium.
     Json of_first(const Json& mine) const;
-    /// Returns `asked` with the number of threads that the launcher grants, unless it is given, and without messages on
-    /// ranks other than 0. Throws SceneError for outputs that several ranks cannot write.
+    /// Returns `asked` with two changes: the number of threads is that of the launcher if `asked` has none, and ranks
+    /// other than 0 print no messages. Throws SceneError for outputs that several ranks cannot write.
     RunOptions options_for(const RunOptions& asked) const;
     /// Divides the world of the scene of rank 0 among the ranks, and returns the part of this rank. Throws SceneError
     /// if the world holds something that cannot be divided. Afterwards `scene.world` must not be used; whole() fills it
@@ -78,17 +80,17 @@ public:
 
     /// Collective. Returns true on all ranks if the argument is true on one of them.
     bool any(bool mine) const;
-    /// Collective. Returns equal reports on all ranks. `wall`: wall time of the steps on this rank [s]. `steps`: their
-    /// number.
+    /// Collective. Returns equal reports on all ranks. `wall`: wall time of the steps on this rank [s]. `steps`: number
+    /// of these steps.
     RanksReport report(double wall, std::uint64_t steps) const;
 
     /// Sets the text that rank 0 writes to standard error if the launcher ends the job by a signal, as it does when
     /// another rank has failed.
     void set_last_words(std::string text);
     /// Handles an error that ended the run of this rank, and returns the exit code. After divide() the other ranks do
-    /// not check for such an error, so this function ends all processes. Before, the ranks compare their errors, and
-    /// rank 0 reports. If MPI does not connect the processes, the first one reports its error, and the others return
-    /// success: a launcher would end the first one when another fails.
+    /// not check for such an error, so this function ends all processes. Before divide(), the ranks compare their
+    /// errors, and rank 0 reports. If MPI does not connect the processes, the first one reports its error, and the
+    /// others return success: if one of them failed, the launcher would end the first process before it reports.
     int fail(const std::exception& error);
     /// Collective. Returns the largest exit code of all ranks.
     int last_code(int mine) const;
@@ -105,7 +107,8 @@ private:
     std::optional<World> part_;
     // traffic counted until the last before_advance(), and the traffic of all calls of World::advance
     RankTraffic before_, in_steps_;
-    std::array<std::string, 2> last_words_;  // current text; previous one, which signal_note may still use
+    // current text, and the previous text, to which signal_note may still point
+    std::array<std::string, 2> last_words_;
 };
 
 /// Throws SceneError if mpirun or srun has started several processes of a command that cannot share its work.

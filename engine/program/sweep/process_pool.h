@@ -12,7 +12,7 @@ namespace skerry {
 struct PoolEnd {
     // Numbers of the jobs that failed before any signal, and texts that describe how their processes ended.
     std::vector<std::pair<int, std::string>> lost;
-    std::vector<int> stopped;  // jobs that ended with an error after a signal had ended the pool
+    std::vector<int> stopped;  // numbers of the jobs that failed after the first signal to the pool
     int done = 0;              // number of jobs that returned 0
     int signal = 0;            // last signal that the pool received; 0: none
 };
@@ -23,7 +23,7 @@ struct PoolCalls {
     FunctionRef<int(int)> run;
     // Called with the number of a job and its exit code (-1 after a signal). Returns whether more jobs may start.
     FunctionRef<bool(int, int)> goes_on;
-    // Called with the numbers of ended and of running jobs, after each change and at least about twice a second.
+    // Called with the count of ended jobs and the count of running jobs, after each change and about twice a second.
     FunctionRef<void(int, int)> show;
 };
 

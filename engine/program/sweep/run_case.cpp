@@ -55,7 +55,7 @@ int run_to_file(const CaseJob& job) {
 }  // namespace
 
 int run_case(const CaseJob& job) {
-    // With this, exceeding the file size limit becomes an ordinary write error.
+    // With SIGXFSZ ignored, exceeding the file size limit becomes an ordinary write error.
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         return run_to_file(job);

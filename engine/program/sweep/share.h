@@ -23,8 +23,8 @@ struct Share {
 using Environment = std::function<const char*(const char*)>;
 
 /// Returns the rank of this process among the tasks that mpirun (Open MPI, or the PMI of MPICH and Intel MPI) or srun
-/// has started; rank 0 of 1 without them. A batch script of SLURM is one process, regardless of the number of tasks
-/// that it may start.
+/// has started. Without a launcher this is rank 0 of 1. A batch script of SLURM is one process, regardless of the
+/// number of tasks that it may start.
 Share task_share(const Environment& environment);
 
 /// Returns the share of this process.

@@ -25,8 +25,8 @@ namespace skerry {
 
 namespace {
 
-/// Returns the number of cores that this process may use. A cgroup or a CPU affinity can make it smaller than the
-/// number of cores of the machine.
+/// Returns the number of cores that this process may use. A CPU affinity or the cpuset of a cgroup can make it smaller
+/// than the number of cores of the machine.
 int cores_here() {
     cpu_set_t set;
     CPU_ZERO(&set);
@@ -81,7 +81,8 @@ void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
               << " of these have a result; folder of the results: " << plan.folder.string() << std::endl;
 }
 
-/// Locks the folder of results against other processes while the object exists, if the file system supports locks.
+/// Holds a lock on the folder of results while the object exists, so that only one process at a time writes the tables.
+/// Has no effect if the file system does not support locks.
 class FolderLock {
 public:
     explicit FolderLock(const std::filesystem::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_CLOEXEC)) {

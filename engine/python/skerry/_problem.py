@@ -220,7 +220,7 @@ class Solution:
     energy_gap: violation of Coulomb's law, summed over all contacts; 0 for an exact solution [J].
     regions: number of independent regions.
     largest_region: number of contacts of the largest region.
-    unconverged: number of regions that reached the iteration limit.
+    unconverged: number of regions that reached the iteration limit; 0 if `converged` is True.
     seconds: computing time of the solve; for a short solve, the median of several solves [s].
     """
 
@@ -351,7 +351,8 @@ def _problem_of_blocks(
     name: str,
     description: str,
 ) -> Problem:
-    """Problem from blocks in any order. Blocks of one row and column are added; missing diagonal blocks become zero."""
+    """Problem from blocks in any order. Blocks with equal row and column are added; missing diagonal blocks become
+    zero."""
     _require_square(shape)
     count = shape[0] // 3
     place = np.concatenate([rows.astype(np.int64) * count + columns, np.arange(count) * (count + 1)])

@@ -10,8 +10,8 @@ namespace skerry::python {
 
 namespace {
 
-/// Handles pending signals such as Ctrl-C, at most every 20 ms. Throws the exception that a signal handler raised, such
-/// as KeyboardInterrupt.
+/// check() handles pending signals such as Ctrl-C, at most every 20 ms, and throws the exception that a signal handler
+/// raised, such as KeyboardInterrupt. Once Python ends, it throws SystemExit.
 class SignalWatch {
 public:
     void check() {
@@ -28,8 +28,8 @@ private:
     Clock::time_point checked_ = Clock::now();
 };
 
-/// Makes a world call Python functions with the report and the contact problem of each step, until the end of the
-/// scope. Functions stored for longer could form a reference cycle with the world, which Python's garbage collector
+/// Makes a world call Python functions with the report and the contact problem of steps, during the lifetime of this
+/// object. Functions stored for longer could form a reference cycle with the world, which Python's garbage collector
 /// would not find.
 class WatchScope {
 public:
@@ -111,8 +111,8 @@ void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none(),
              nb::arg("take").none(), nb::arg("every"))
         .def("relax", &relax_world)
-        // Throws during advance(), as World::watch_steps does. At other times nothing changes, because no function is
-        // registered outside of WatchScope.
+        // World::watch_steps() throws during advance(). At other times it only removes the registered function, and
+        // outside of WatchScope none is registered.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))
         .def("trace_text", guarded([](World& world) {

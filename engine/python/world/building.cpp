@@ -1,4 +1,4 @@
-// Making, copying and saving worlds, and adding and removing their objects.
+// Binds the functions that make, copy and save worlds, and that add and remove their objects.
 #include <nanobind/stl/map.h>
 #include <filesystem>
 #include <map>

@@ -1,4 +1,4 @@
-// Functions that bind groups of methods of the class World of the extension module.
+// Declares the functions that bind the methods of the Python class World, one function per group of methods.
 #pragma once
 
 #include "engine/python/world_object.h"
@@ -31,8 +31,8 @@ void bind_views(WorldClass& type);
 void bind_visuals(WorldClass& type);
 void bind_results(WorldClass& type);
 
-/// Binds the methods that all kinds of objects with an ObjectView have in common. `list`: name of the Python method
-/// that returns the handles of all objects of the kind.
+/// Binds the methods that are common to all kinds of objects with an ObjectView (skerry/object_view.h), such as joints.
+/// `list`: name of the Python method that returns the handles of all objects of the kind.
 template <class HandleType>
 void bind_view(WorldClass& type, const char* list) {
     using View = ObjectView<HandleType>;

@@ -190,7 +190,7 @@ void add_counters(const RunCounters& counters, nb::dict& values) {
     values["start_gap_violation"] = counters.start_gap_violation;
 }
 
-/// Adds the lists of the report, and the numbers of bodies, nodes and other objects in the world.
+/// Adds to `values` the lists of the report, and the numbers of bodies, nodes and other objects in the world.
 void add_objects(const WorldReport& report, nb::dict& values) {
     values["asleep"] = report.asleep;
     values["bodies"] = report.bodies;

@@ -1,4 +1,4 @@
-// Contacts, forces and queries of a world.
+// Python bindings for the contacts, the forces and the spatial queries (rays, nearest points) of a world.
 #include <unordered_map>
 
 #include "engine/python/world/parts.h"
@@ -51,7 +51,8 @@ struct HitRow {
     Real distance = infinity;
 };
 
-/// The bytes of the rows as an array of uint8. skerry/_results.py views them with the dtype of the rows.
+/// Returns the bytes of the rows as an array of uint8, which skerry/_results.py reinterprets as an array of the dtype
+/// of the rows.
 template <class Row>
 nb::ndarray<nb::numpy, std::uint8_t> bytes_of(const std::vector<Row>& rows) {
     const std::span<const Row> all(rows);

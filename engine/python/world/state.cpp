@@ -9,7 +9,7 @@ namespace {
 
 using Tensors = nb::ndarray<nb::numpy, Real>;
 
-/// A NumPy array (k, 3, 3). Matrices are transposed first, because Eigen stores columns and NumPy rows contiguously.
+/// A NumPy array (k, 3, 3). Matrices are transposed first, because Eigen stores a matrix by columns and NumPy by rows.
 Tensors array_of(std::vector<Mat3>&& matrices) {
     for (Mat3& matrix : matrices) matrix.transposeInPlace();
     return python::array_of<Real>(std::span<const Mat3>(matrices), {3, 3});

@@ -7,8 +7,8 @@ namespace skerry::python {
 
 namespace {
 
-/// Owner of one NumPy array that shows memory of a world. The owner keeps the world alive. While it exists, calls that
-/// would move this memory are refused (require_no_views).
+/// Owner of one NumPy array that shows memory of a world. It keeps the world alive. While an owner exists,
+/// require_no_views() refuses calls that would move this memory.
 class View {
 public:
     View(nb::object world, const BodyHandle& body) : world_(std::move(world)), body_(body) {

@@ -31,9 +31,9 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
     }
 }
 
-/// The quantities of a study, and the columns that they belong to.
+/// Results of measure_all(): the measured quantities, and properties of the columns from which they are computed.
 struct Measured {
-    std::vector<Real> scales, until;     // scale of each column, and time up to which runs agree on it [s]
+    std::vector<Real> scales, until;     // by column: scale (column_scales()), and end of the agreement of the runs [s]
     Real agree_until = infinity;         // StudyResult::agree_until
     std::vector<std::size_t> columns{};  // columns with error bars
     std::vector<MeasuredQuantity> quantities{};
@@ -101,8 +101,8 @@ OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& set
         const StudyQuantity& r = quantity.result;
         const Real wanted = settings.error * r.scale;
         open.noise |= r.noise > noise_share * wanted;
-        // With two step lengths, the estimate of the step error assumes order 1. A third step length may show a smaller
-        // error.
+        // A run with a third step length is worth while: with only two, the estimate of the step error assumes order 1,
+        // and a third one may show a smaller error.
         open.step |= r.step > step_share * wanted && !(r.step < share_of_bar * r.error);
     }
     return open;

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Analyses the runs. The first is that of the scene as it is, and must have the status `ok`. Runs with another status,
+/// Analyses the runs. The first must be the run of the unchanged scene, with the status `ok`. Runs with another status,
 /// other columns or another number of rows are not evaluated. The name of the scene, the assignments of the cheapest
 /// settings and `stopped` are left empty.
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings);
@@ -17,7 +17,7 @@ struct OpenParts {
     bool step = false;   // true if a run with a smaller step length would help
     bool noise = false;  // true if a run with another perturbation of the start would help
 };
-/// Finds the open parts from the runs so far. The first is that of the scene as it is, and must have the status `ok`.
+/// Finds the open parts from the runs so far. The first must be the run of the unchanged scene, with the status `ok`.
 OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings);
 
 }  // namespace skerry

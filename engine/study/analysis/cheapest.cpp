@@ -9,16 +9,16 @@ namespace skerry {
 
 namespace {
 
-/// A choice of one setting, and the ratio of its CPU time to that of the scene as it is.
+/// A possible mesh, step length or tolerance. `cost`: CPU time with it, divided by the CPU time of the unchanged scene.
 struct Option {
     StudyVariant variant;
     double cost;
-    bool predicted = false;  // true for a mesh with which no run was made
+    bool predicted = false;  // true for a finer mesh that no run has used
 };
 
 /// Error and cost are predicted for this number of mesh levels beyond the finest one of the runs.
 constexpr int finer_levels = 2;
-constexpr double cost_of_level = 16;  // eight times the elements, twice the steps; used if no finer mesh was run
+constexpr double cost_of_level = 16;  // 8 x elements, 2 x steps; used if the runs lack the level below the finest
 
 std::vector<Option> mesh_options(const StudyFamily& family) {
     std::vector<Option> options;
@@ -30,7 +30,7 @@ std::vector<Option> mesh_options(const StudyFamily& family) {
     const auto plain = [](const Option& option) { return option.variant.element ? -1000 : option.variant.refine; };
     const Option finest = *std::ranges::max_element(options, {}, plain);
     const auto before = std::ranges::find(options, finest.variant.refine - 1, plain);
-    if (options.size() == 1) return options;  // the meshes of the scene have no levels
+    if (options.size() == 1) return options;  // no run used another mesh
     const double growth = before == options.end() ? cost_of_level : std::max(1.0, finest.cost / before->cost);
     for (int level = 1; level <= finer_levels; ++level)
         options.push_back({{.refine = finest.variant.refine + level}, finest.cost * std::pow(growth, level), true});
@@ -58,12 +58,12 @@ bool counts(const MeasuredQuantity& quantity) {
            r.scale > 0;
 }
 
-/// Settings with their predicted largest error, and the quantity with this error.
+/// Settings with their predicted largest error. `worst`: name of the quantity with this error.
 struct Prediction {
     CheapestSettings settings;
     std::string worst{};
     std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
-    bool may_be_nearest = true;           // may be proposed if nothing reaches the error: mesh was run, not linear
+    bool may_be_nearest = true;           // false for meshes that no run has used and for linear elements
 };
 
 Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
@@ -105,8 +105,8 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                 least_error = std::min(least_error, error);
                 if (predictions.back().may_be_nearest) least_measured = std::min(least_measured, error);
             }
-    // If no settings reach the wanted error, the cheapest ones are proposed whose error is at most this factor times
-    // the smallest error. Only settings with `may_be_nearest` are compared then.
+    // If no settings reach the wanted error, the cheapest settings with an error of at most this factor times the
+    // smallest error are proposed. Only settings with `may_be_nearest` are considered then.
     constexpr double nearly = 1.1;
     const bool reaches = least_error <= wanted;
     const double target = reaches ? wanted : nearly * least_measured;

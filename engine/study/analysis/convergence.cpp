@@ -15,7 +15,7 @@ constexpr Real assumed_order = 1;  // order that is assumed if there are only tw
 // An observed order agrees with the theory if it is between `near_least` times the lowest and `near_most` times the
 // highest order of the theory.
 constexpr Real near_least = 0.5, near_most = 1.5;
-// If two levels differ by more than this share of the size of the value, they are too coarse for any order to hold.
+// Two levels that differ by more than this share of the size of the value are too coarse to converge with any order.
 constexpr Real coarse_share = 0.3;
 
 }  // namespace
@@ -42,8 +42,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     const auto be_coarse = [&] {
         shape_ = ConvergenceShape::coarse;
         used_order_ = 0;
-        // The error may be as large as the value itself. For a position, whose value may contain a large offset, it is
-        // at most `size` plus the difference.
+        // The error may be as large as the value itself. The value of a position may contain a large offset, so the
+        // error is at most `size` plus the difference of the levels.
         least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
     };
     const bool differs_much = std::abs(difference) > coarse_share * size;
@@ -59,8 +59,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
-        // Differences change their sign if two terms of the error have opposite signs, for example a h^2 + b h^3. Such
-        // an error is below the estimate of order 1.
+        // The differences of successive levels have opposite signs if two terms of the error do, such as a h^2 and b
+        // h^3 with a b < 0. Such an error is below the estimate with order 1.
     } else if (order_ < near_least * theory.least) {
         // An order near 0 predicts an unbounded error, so the estimate is limited to the sum of both differences.
         shape_ = ConvergenceShape::slow;

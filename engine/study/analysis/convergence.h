@@ -15,7 +15,7 @@ struct ConvergenceLevel {
     Real value;
 };
 
-/// Orders of convergence that the theory predicts: the lowest, for results of poor smoothness, and the highest.
+/// Range of the orders of convergence that the theory predicts. `least` holds for results of poor smoothness.
 struct TheoryOrder {
     Real least = 2, most = 2;
 };
@@ -23,12 +23,13 @@ struct TheoryOrder {
 /// Behaviour of the differences between successive levels.
 /// - unmeasured: there is one level only.
 /// - two_levels: two levels give a difference and no order.
-/// - coarse: two levels differ so much that the error of neither is small, and no third level shows that the
-///   differences fall.
+/// - coarse: two levels differ so much that both have large errors, and no third level shows that the differences
+///   decrease.
 /// - regular: the observed order is near that of the theory.
 /// - equal: the differences are not above the noise.
 /// - slow: the observed order is far below that of the theory, or the differences grow.
-/// - fast: the observed order is far above that of the theory, so the coarse levels do not follow it yet.
+/// - fast: the observed order is far above that of the theory, so the coarse levels do not converge with the order of
+///   the theory yet.
 /// - oscillating: successive differences have opposite signs.
 enum class ConvergenceShape { unmeasured, two_levels, coarse, regular, equal, slow, fast, oscillating };
 
@@ -49,9 +50,9 @@ public:
     bool irregular() const;
     /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
     Real error() const { return error_at(1); }
-    /// Error bound of the value at `h`. For h below the finest level it is predicted with the order; for the shapes
-    /// coarse, slow and oscillating it stays that of the finest level. NaN if h lies between the levels, above them, or
-    /// if the error is unmeasured.
+    /// Error bound of the value at `h`. For h below the finest level the bound is predicted with the order of
+    /// convergence; for the shapes coarse, slow and oscillating the bound of the finest level is returned. NaN if h
+    /// lies between the levels, above them, or if the error is unmeasured.
     Real error_at(Real h) const;
     /// Error bound of any other approximation of the same limit; NaN if unmeasured.
     Real error_of(Real value) const;

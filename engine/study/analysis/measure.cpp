@@ -12,7 +12,7 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real matters = 0.2;  // fraction of the error bar below which an irregular part is ignored
+constexpr Real matters = 0.2;  // fraction of the error bar below which a part without regular convergence is ignored
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -59,7 +59,8 @@ TheoryOrder mesh_theory(const SeriesColumn& column) {
 }
 
 TheoryOrder step_theory(const StudyRun& scene) {
-    // docs/methods/time_stepping.md 1.4
+    // Leapfrog without contacts has order 2. In all other cases the order may be as low as 1
+    // (docs/methods/time_stepping.md 1.4).
     return scene.integrator == Integrator::leapfrog && scene.max_contacts == 0 ? TheoryOrder{2, 2} : TheoryOrder{1, 2};
 }
 
@@ -73,9 +74,9 @@ bool is_contact(const StudyVariant& v) {
     return v.refine == 0 && v.step == 1 && !v.element && v.draw == 0;
 }
 
-/// Growth of a largest stress from mesh to mesh.
+/// Growth of a stress figure, such as the largest value of a column, from mesh to mesh.
 struct StressGrowth {
-    std::vector<Real> rates{};  // exponents a of a stress h^-a between successive meshes, from coarse to fine
+    std::vector<Real> rates{};  // between successive meshes: a, if the stress grows as h^-a; from coarse to fine
     bool same_place = false;    // true if the two finest meshes have their largest stress near one place
 
     StressGrowth(const StudyFamily& family, std::size_t column, StudyFigure figure) {
@@ -103,8 +104,8 @@ struct StressGrowth {
                            [](Real rate) { return rate > least_rate; });
     }
     /// True for a stress without a limit. A stress that follows h^-a grows by one constant factor per level. The factor
-    /// of a converging stress falls towards 1: per level, its exponent is multiplied by 0.5 with order 1, and by 0.7
-    /// with order 1/2.
+    /// of a converging stress falls towards 1: per level, the exponent a is multiplied by 0.5 with order 1, and by 0.7
+    /// with order 1/2. A ratio above 0.75 therefore shows a singular stress.
     bool is_singular() const {
         constexpr Real least_steadiness = 0.75;
         return grows(2) && rates.back() > least_steadiness * rates[rates.size() - 2];
@@ -144,7 +145,7 @@ void combine(MeasuredQuantity& quantity) {
     for (const auto& [convergence, error] : parts) {
         if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
         if (convergence->irregular() && error <= matters * r.error) {
-            r.best_error += error;  // the part is too small to disturb the extrapolation of the others
+            r.best_error += error;  // this part is not extrapolated; its whole error is added
             continue;
         }
         r.best += convergence->limit() - r.value;
@@ -265,7 +266,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
         if (v.element) quantity.elements.emplace_back(v, value);
     }
-    constexpr Real rounding = 1e-9;  // bound of the rounding errors that a run accumulates, relative to the scale
+    constexpr Real rounding = 1e-9;  // assumed bound of the rounding errors of a run, divided by the scale
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
@@ -281,7 +282,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
-    // Only the change of a length is affected by flat faces, not its offset.
+    // Flat faces affect only the change of a length, not its offset, so the size of the column limits this error.
     quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
     r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);
@@ -306,9 +307,9 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
 }
 
 void StudyFamily::find_zeros() {
-    // If a shorter step or a smaller tolerance reduces the size of a column below this share of the size in the first
-    // run, its values are only errors of the steps or of the solver. With order 1, a quarter of the step gives a
-    // quarter of the error.
+    // If a shorter step or a smaller tolerance reduces the size of a column below this share of its size in the first
+    // run, its values are only errors of the steps or of the solver. A quarter of the step, for example, reduces an
+    // error of order 1 to a quarter.
     constexpr Real vanishing = 1.0 / 3;
     std::vector<Real> largest = sizes, least = sizes;
     for (const StudyRun* run : comparable) {

@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Number that a column is reduced to.
+/// Figure: the single number to which a column (a time series) is reduced.
 /// - end: value in the last row.
 /// - largest, smallest: extreme value of all rows.
 /// - mean: mean over time.
@@ -41,14 +41,14 @@ struct MeasuredQuantity {
     StudyQuantity result;
     Convergence mesh{}, step{}, contact{};
     Real noise = 0;  // largest difference between a perturbed run and the scene as it is
-    std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
-    Real shape = 0;       // part of the mesh error that finer meshes keep, see StudyColumn::shape_error
+    std::vector<std::pair<StudyVariant, Real>> elements{};  // (variant, value) of runs with other elements
+    Real shape = 0;       // part of the mesh error that refinement does not reduce, see StudyColumn::shape_error
     Real least_mesh = 0;  // lower bound of the mesh error of linear elements, from a comparison with smoothed elements
 };
 
 /// Returns the size of each column: its largest absolute value in the run, or for lengths and energies the largest
-/// change since the start. The components of a vector share their largest size. So do all energies of a probe, and all
-/// forces of a probe.
+/// change since the start. The components of a vector all get the size of the largest one; so do all energies of a
+/// probe, and all forces of a probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: its size, but at least
@@ -58,7 +58,7 @@ std::vector<Real> column_sizes(const StudyRun& run);
 /// - the difference that the perturbation of the start makes in the first row, divided by agreement_share.
 std::vector<Real> column_scales(const StudyFamily& family);
 
-/// Returns the figures of a column that get an error bar.
+/// Returns the figures of a column for which the study reports an error bar.
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);
 
 /// Measures a figure of a column. `scale` and `agree_until` belong to the column, `wanted` is the wanted relative
@@ -66,8 +66,8 @@ std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t colum
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
                          Real agree_until, Real wanted);
 
-/// Half width of the error bar of the quantity in a run with the settings `variant`. For meshes finer than those of the
-/// runs it is predicted. NaN if unknown.
+/// Half width of the error bar of the quantity in a run with the settings `variant`. For meshes finer than those of all
+/// runs the error is predicted. NaN if unknown.
 Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant);
 
 /// Half width of the error bar of each row of a column. NaN after `agree_until`, except for statistics of all bodies.

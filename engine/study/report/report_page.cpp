@@ -54,7 +54,7 @@ Json run_rows(const StudyResult& result) {
     return rows;
 }
 
-/// The table without the columns that are empty in all rows but the heading.
+/// Returns the table without the columns whose cells are empty in all rows below the heading.
 Json without_empty_columns(const Json& rows) {
     Json kept = Json::array();
     for (const Json& row : rows) {
@@ -74,7 +74,8 @@ Json summary_table(const StudyResult& result) {
         const auto with_bar = [](const std::string& value, const std::string& error) {
             return error.empty() ? value : value + " \u00b1 " + error;
         };
-        // The notes above the table contain the sentences of all quantities with another verdict than `known`.
+        // The sentences of all quantities with a verdict other than `known` are left out here, because the notes above
+        // the table contain them.
         rows.push_back({q.name, with_bar(text.value, text.error) + " " + text.unit, text.share, name_of(q.verdict),
                         text.parts, with_bar(text.best, text.best_error), text.orders,
                         q.verdict == StudyVerdict::known ? q.sentence : std::string()});

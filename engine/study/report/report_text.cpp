@@ -23,7 +23,7 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
     line += " +- " + text.error;
     if (!text.parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + text.parts + ")";
-    // The extrapolated value is shown if its error bar is much shorter.
+    // The extrapolated value is shown if its error bar is much shorter than that of the computed value.
     constexpr double much = 0.7;
     if (!text.best.empty() && q.best_error < much * q.error) line += ", best " + text.best + " +- " + text.best_error;
     if (!text.orders.empty()) line += ", " + text.orders;
@@ -43,7 +43,7 @@ bool is_minor(const StudyQuantity& q) {
            std::ranges::any_of(minor, [&](std::string_view part) { return q.name.find(part) != std::string::npos; });
 }
 
-/// True for a figure of a column that summarises all bodies.
+/// True for a quantity that is computed from a column with statistics of all bodies.
 bool is_statistic(const StudyQuantity& q, const StudyResult& result) {
     return std::ranges::any_of(result.runs.front().columns, [&](const StudyColumn& column) {
         return column.is_statistic && q.name.starts_with(column.what.probe + "." + column.what.quantity + "_");

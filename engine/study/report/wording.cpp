@@ -22,8 +22,8 @@ std::pair<Real, std::string> prefix_of(Real size, const std::string& unit) {
     return {1, ""};
 }
 
-/// Rounds a value to the second significant digit of its error and returns it as text. If `value` is itself an error,
-/// both arguments are equal.
+/// Returns a value as text, rounded to the second significant digit of its error. To format an error, pass it for both
+/// arguments.
 std::string to_digit_of(Real value, Real error) {
     constexpr int most_digits = 6, most_decimals = 4;
     if (!(error > 0) || !std::isfinite(error)) return short_text(value, most_digits);
@@ -90,7 +90,7 @@ QuantityText quantity_text(const StudyQuantity& q) {
     }
     if (has_error && in_unit(q.error) > 0 && q.scale > 0) {
         text.share = short_text(100 * q.error / q.scale, 2) + " %";
-        // The share refers to the scale, which the text names unless it is close to the value.
+        // The share is relative to the scale. The text names the scale unless the scale is close to the value.
         constexpr Real near = 0.1;
         if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
             const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);

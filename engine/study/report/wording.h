@@ -15,7 +15,7 @@ std::string variant_text(const StudyVariant& variant);
 struct QuantityText {
     std::string value, error, unit;  // error: empty if unknown, or if the value is "zero within" a number
     std::string parts;               // parts of the error, for example "mesh 2.6, step 0.1"; empty if zero or unknown
-    std::string best, best_error;    // empty if unknown
+    std::string best, best_error;    // extrapolated value and its error; empty if unknown
     std::string share;               // error relative to the scale [%]; names the scale if the value differs from it
     std::string orders;              // for example "order 1.9 (2 expected)"; empty if unknown
 };

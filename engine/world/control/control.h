@@ -1,4 +1,5 @@
-// Functions of the files control_*.cpp that other files use: changes and present states of the objects of a world.
+// Functions of the files control_*.cpp that other files call. They change objects of a world or return their present
+// state.
 #pragma once
 
 #include <cstdint>
@@ -46,8 +47,8 @@ void hold_here(Model& model, std::size_t body, Real now);
 
 // control_collisions.cpp
 
-/// Enables collisions in all disabled pairs of a body or collider. Must be called before the slot of this object is
-/// reused, because pairs name objects by slot.
+/// Enables the collisions of a body or collider with all objects for which they are disabled. Must be called before the
+/// slot of this object is reused, because the table of disabled pairs names objects by slot.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 /// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
@@ -62,9 +63,9 @@ CableState cable_state(const WorldState& state, CableHandle cable);
 // control_cavities.cpp
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity);
-/// Stores the present positions of the faces of a body's open cavities with a gas or a liquid. The volume of such a
-/// cavity changes by the volume that its faces sweep from the stored positions. This function is called after a
-/// placement of nodes, which must not change the volume.
+/// Stores the present face positions of a body's open cavities with a gas or a liquid. The volume of such a cavity is
+/// updated by the volume that its faces sweep from the stored positions. Must be called after nodes were placed between
+/// steps, so that the placement does not change the volume.
 void renew_corners(Model& model, std::size_t body);
 
 // control_dynamics.cpp
@@ -80,21 +81,21 @@ JointState joint_state(const Model& model, JointHandle joint);
 
 // control_materials.cpp
 
-/// Returns the properties that are set, as optional values. In `surface` a negative value marks a property that is not
-/// set.
+/// Returns the surface properties as settings. A negative value in `surface` marks a property that is not set; its
+/// optional value is then empty.
 SurfaceSettings set_values_of(const SurfaceProperties& surface);
 
 // control_ties.cpp
 
 /// Returns the state of a tie, with the forces of the last step.
 TieState tie_state(const WorldState& world, TieHandle tie);
-/// Enables the collisions that ties have switched off, for each tie whose nodes have all broken off. Must be called
-/// after a step in which the last node of a tie has broken off.
+/// Enables the collisions that a tie has switched off, for each tie of which no node holds any more, unless another tie
+/// keeps them off. Must be called after a step in which the last node of a tie has broken off.
 void release_ties(WorldState& world);
 
 // control_fibres.cpp
 
-/// See Fibres::state.
+/// Returns the present state of fibres (Fibres::state).
 FibreState fibre_state(const WorldState& world, FibreHandle fibres);
 
 // control_motion.cpp

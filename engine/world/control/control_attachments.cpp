@@ -15,12 +15,12 @@ namespace skerry {
 
 namespace {
 
-// Directions with a cosine of their angle up to this value count as perpendicular.
+// Largest cosine of the angle between two directions that count as perpendicular.
 constexpr Real least_oblique = 1e-9;
 
-/// Returns the matrix for AttachmentTable::held: its columns are the unit vectors of the directions; the identity if
-/// there are none or three. Throws SceneError unless there are at most three nonzero directions, perpendicular to each
-/// other.
+/// Returns the matrix for AttachmentTable::held. Its columns are the unit vectors of the directions. No directions, or
+/// three, mean that nodes are held completely; the result is then the identity. Throws SceneError unless there are at
+/// most three nonzero directions, perpendicular to each other.
 Mat3 held_directions(const std::vector<Vec3>& directions) {
     if (directions.empty()) return Mat3::Identity();
     if (directions.size() > 3)

@@ -36,7 +36,8 @@ Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> posit
     return edges.determinant();
 }
 
-/// Moves a rigid body to the given node positions. Throws SceneError if no rigid motion of the body leads to them.
+/// Moves a rigid body to the given node positions. Throws SceneError if no rigid motion of the body leads to these
+/// positions.
 void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
     const RigidFit fit = fit_rigid_body(model, body, position);

@@ -16,7 +16,7 @@ namespace skerry {
 
 namespace {
 
-/// The quantity of a cable that is controlled, and its values over time, which belong to the CableDrive.
+/// The controlled quantity of a cable. `values` points to its values over time, which a CableDrive owns.
 struct CableDriveRow {
     CableControl control;
     const TimeTable* values;
@@ -36,8 +36,8 @@ std::string title_of_cable(const Model& model, std::size_t row) {
     return title_of_cable(title_of_point(points.begin), title_of_point(points.end - 1));
 }
 
-/// Returns the quantity that `drive` gives. Throws SceneError unless it is exactly one, with valid values. `object`:
-/// title of the cable.
+/// Returns the quantity that `drive` gives. Throws SceneError unless `drive` gives exactly one quantity, with valid
+/// values. `object`: title of the cable.
 CableDriveRow validated(const std::string& object, const CableDrive& drive) {
     const int count = drive.tension.has_value() + drive.length.has_value() + drive.rate.has_value();
     if (count != 1)

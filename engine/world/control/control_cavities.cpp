@@ -62,7 +62,7 @@ std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
     };
     for (const Face& face : surface)
         for (const Index n : face) parent[root(n)] = root(face[0]);
-    std::vector<Real> outward(parent.size(), 0);  // signed volume of each part by its root, < 0 around a hollow [m^3]
+    std::vector<Real> outward(parent.size(), 0);  // at the root of each part: signed volume, < 0 around a hollow [m^3]
     for (const Face& face : surface) {
         Vec3 corner;
         const Vec3 area = rest_area(model, body, face, corner);
@@ -88,7 +88,7 @@ std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::
                "a body with a mesh");
     if (!wanted) return faces_of_hollows(model, body);
     if (wanted->empty()) refuse(object, "faces", "no faces", "at least one face of the surface");
-    std::map<Face, Face> surface;  // faces by their sorted nodes
+    std::map<Face, Face> surface;  // key: sorted nodes; value: face as oriented on the surface
     for (const Face& face : model.body_records[body].surface) surface.emplace(sorted(face), face);
     std::vector<Face> faces;
     for (const Face& face : *wanted) {
@@ -103,8 +103,8 @@ std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::
     return faces;
 }
 
-/// Returns an edge that the faces do not pass equally often in both directions, so that they are not closed. Returns
-/// {no_index, no_index} if there is none.
+/// Returns an edge that shows that the faces do not form a closed surface: they pass it more often in one direction
+/// than in the other. Returns {no_index, no_index} if there is no such edge.
 std::pair<Index, Index> open_edge(const std::vector<Face>& faces) {
     std::map<std::pair<Index, Index>, int> sum;
     for (const Face& face : faces)
@@ -285,7 +285,7 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
     now.faces = table.faces[row].size();
     now.closed = table.closed[row] != 0;
     now.pressure = filling.pressure();
-    now.volume = std::max(filling.volume, Real(0));  // the filling's is < 0 if the faces enclose the body, not a hollow
+    now.volume = std::max(filling.volume, Real(0));  // filling.volume is < 0 if the faces enclose the body itself
     now.mass = table.mass[row];
     now.energy = filling.energy();
     const CavityInputs cavities = cavities_of(model);
@@ -324,7 +324,7 @@ void wake_ends(Model& model, std::size_t pipe) {
         if (body != no_index) model.wake(static_cast<std::size_t>(body));
 }
 
-/// Title of a pipe between two cavities, or between a cavity and a reservoir if both rows are equal.
+/// Title of a pipe. `first`, `second`: rows of its cavities; equal rows mark a pipe from a cavity to a reservoir.
 std::string title_of_pipe(const Model& model, std::size_t first, std::size_t second) {
     return "pipe between the " + title_of_row(model, first) + " and " +
            (first == second ? "a reservoir" : "the " + title_of_row(model, second));

@@ -9,7 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Rows of the two objects of a pair: of BodyTable, and of ColliderTable for `second` if `kind` is `collider`.
+/// Two objects that may collide. `first` is a row of BodyTable. `second` is a row of ColliderTable if `kind` is
+/// `collider`, otherwise of BodyTable.
 struct RowPair {
     PairKind kind;
     Index first, second;

@@ -66,7 +66,7 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
                       "remove the " + sequence_of(found) + ", change the dynamics, then add them again");
 }
 
-/// Centre of mass and momenta of a body as a whole.
+/// Centre of mass, momentum and angular momentum of a body.
 struct WholeMotion {
     Vec3 center;                      // centre of mass [m]
     Vec3 momentum, angular_momentum;  // angular momentum is about `center` [kg m/s, kg m^2/s]
@@ -124,8 +124,8 @@ std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const 
     return shape;
 }
 
-/// Throws SceneError if a tetrahedron of the shape is flat or inverted. The inertia of a body that is frozen in such a
-/// shape would be wrong.
+/// Throws SceneError if a tetrahedron of the shape is flat or inverted. A rigid body with such a shape would have a
+/// wrong inertia.
 void require_upright_shape(const Model& model, std::size_t body, std::span<const Vec3> shape) {
     const BodyRecord& record = model.body_records[body];
     const Mesh deformed{.nodes = {shape.begin(), shape.end()}, .tetrahedra = record.tetrahedra};
@@ -150,7 +150,7 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     const BodyRecord record = model.body_records[body];
     const RigidPose pose = pose_of_body(model, body);
     const std::span<const Vec3> shape = model.mesh_shape(body);
-    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // appending rows may reallocate `shape`
+    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // copy, as appending rows may move `shape`
     std::vector<Vec3> frozen;
     if (next == BodyDynamics::rigid) frozen = deformed_shape_of(model, body, pose, mesh_shape);
     if (!frozen.empty()) require_upright_shape(model, body, frozen);

@@ -34,8 +34,8 @@ void require_modulus(const std::string& object, const char* field, Real found, c
     if (!(std::isfinite(found) && found >= 0)) refuse(object, field, short_text(found), expected);
 }
 
-/// Throws SceneError if fibres cannot act on a body: on a collider mesh, a rigid body, or an implicit body with
-/// Settings::theta below 1, to which forces that follow the deformation would add energy.
+/// Throws SceneError if the body is a collider mesh, a rigid body, or an implicit body while Settings::theta is below
+/// 1. Fibre forces follow the deformation and would add energy to such an implicit body.
 void require_deforming(const Model& model, std::size_t body, const std::string& object) {
     if (model.bodies.kind[body] != BodyKind::deformable || model.is_rigid(body))
         refuse(object, "body", "a body that does not deform", "an explicit or implicit body");
@@ -167,7 +167,7 @@ FibreSettings Fibres::settings(FibreHandle fibres) const {
     for (auto t = static_cast<std::size_t>(table.tetrahedra[row].begin);
          t < static_cast<std::size_t>(table.tetrahedra[row].end); ++t) {
         settings.tetrahedra.push_back(table.tetrahedron[t]);
-        Vec3 along = Vec3::Zero();  // fibre direction d: the derivative of the rest position along d is d itself
+        Vec3 along = Vec3::Zero();  // direction d = sum of (slope of node a along d) * (rest position of node a)
         for (std::size_t a = 0; a < 4; ++a)
             along += table.slope[t][a] * rest[static_cast<std::size_t>(table.node[t][a])];
         settings.direction.push_back(along);

@@ -75,13 +75,13 @@ LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale)
     return handle;
 }
 
-/// Row of the body of a field, or no_index for all bodies. Throws SceneError for a stale handle.
+/// Row of the body on which a force field acts; no_index: all bodies. Throws SceneError for a stale handle.
 Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
 }
 
-/// Throws SceneError for a round body, which has no mesh faces, for an empty list, and for a face that is not on the
-/// surface of the body or is listed twice.
+/// Throws SceneError if the body is round and thus has no faces, if the list is empty, or if a face is listed twice or
+/// is not on the surface of the body.
 void require_faces(std::span<const std::array<Index, 3>> faces, const Model& model, std::size_t body) {
     const std::string object = title_of_load(model, static_cast<Index>(body));
     const BodyRecord& record = model.body_records[body];
@@ -111,7 +111,7 @@ const char* field_of_vector(LoadKind kind) {
                                         : "acceleration";
 }
 
-/// Sum of the present forces of a load on all nodes [N].
+/// Present total force of a load, summed over the nodes [N].
 Vec3 force_of_load(const Model& model, std::size_t row, Real scale) {
     const LoadTable& table = model.loads;
     const LoadInputs loads =
@@ -166,7 +166,7 @@ LoadHandle Loads::add(const TractionLoad& load) {
     LoadRow row{
         .kind = LoadKind::traction, .body = body, .vector = load.traction, .area = load.area, .face = load.faces};
     if (load.area == LoadArea::present) {
-        std::vector<Real> faces_at(rest.size(), 0);  // by node: number of the loaded faces at it
+        std::vector<Real> faces_at(rest.size(), 0);  // for each node: number of loaded faces that contain it
         for (const auto& face : load.faces)
             for (const Index node : face) ++faces_at[static_cast<std::size_t>(node)];
         for (const auto& face : load.faces)
@@ -176,7 +176,7 @@ LoadHandle Loads::add(const TractionLoad& load) {
             }
         return append_load(*world_, row, load.scale);
     }
-    std::vector<Real> of_node(rest.size(), 0);  // by node: a third of the area of the loaded faces at it [m^2]
+    std::vector<Real> of_node(rest.size(), 0);  // for each node: a third of the area of its loaded faces [m^2]
     for (const auto& [a, b, c] : load.faces) {
         const Vec3& first = rest[static_cast<std::size_t>(a)];
         const Vec3 twice_area =

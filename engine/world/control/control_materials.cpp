@@ -14,8 +14,8 @@ namespace skerry {
 
 namespace {
 
-/// Copy of the element data, node masses and stable steps of a body. If a change of its material fails, they are put
-/// back.
+/// Copy of the element data, node masses and stable steps of a body. put_back() restores them if a change of its
+/// material fails.
 class KeptBody {
 public:
     KeptBody(Model& model, std::size_t body) : body_(body) {
@@ -178,8 +178,8 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     if (next.sets_losses)
         for (const std::size_t body : bodies)
             if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) refuse_losses(model.body_records[body].name);
-    // Rigid and implicit bodies come last, because any step is stable for them. If an explicit body has no stable step,
-    // the error is thrown before these bodies change, so KeptBody need not restore their masses.
+    // Explicit bodies come first, because only they can fail, for lack of a stable step. Rigid and implicit bodies are
+    // then still unchanged, so KeptBody need not restore their masses.
     std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });
     next.write(model.materials, static_cast<std::size_t>(row));
     if (!now.same_elements(next)) {

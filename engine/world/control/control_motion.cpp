@@ -47,8 +47,8 @@ struct Scripted {
         table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
     /// Replaces the script by the key `from` and the poses `to`. A rotation has many rotation vectors, which differ by
-    /// full revolutions. The vector nearest to that of the previous key is used, so that the object makes no additional
-    /// revolution.
+    /// full revolutions. Each key gets the vector nearest to that of the previous key, so that the object makes no
+    /// additional revolution.
     void start_keys(const Keyframe& from, std::span<const Keyframe> to) const {
         if (keys().size() != to.size() + 1) {
             erase_keys();
@@ -89,8 +89,9 @@ bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const V
     return true;
 }
 
-/// Moves an object steadily from its present pose to each of the poses `to` in turn. Keeps the script if the object
-/// already rests at the last pose or moves there with the same time of arrival.
+/// Moves an object from its present pose to each of the poses `to` in turn, with constant velocities between them.
+/// Keeps the script if the object already rests at the last pose, or if its script already moves it to this pose by the
+/// same time.
 template <class Table>
 void follow(const Scripted<Table>& scripted, std::span<const Keyframe> to, Real now) {
     const RigidPose from = scripted.pose(now);
@@ -142,8 +143,8 @@ void for_each_script(Model& model, Index collider, auto&& change) {
 }
 
 /// Positions of all nodes of a body after one of its attachments was moved from the pose `from` to `pose`. If this
-/// attachment holds the frame of the body, free nodes move rigidly with it. Nodes that it holds in some directions only
-/// move in these directions. Nodes that other attachments hold completely do not move.
+/// attachment holds the frame of the body, free nodes move rigidly with it. Nodes that the attachment holds in some
+/// directions move in these directions only. Nodes that other attachments hold completely do not move.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;

@@ -38,8 +38,8 @@ void validate_rest_length(const std::string& object, const TimeTable& rest_lengt
                    short_text(rest_length.keys[k].value), "a length >= 0 (m)");
 }
 
-/// Throws SceneError if the anchor is on an implicit body and Settings::theta is below 1. The spring force, which
-/// follows the deformation, would then add energy to the body.
+/// Throws SceneError if the anchor is on an implicit body and Settings::theta is below 1. The spring force follows the
+/// deformation, and with this theta it would add energy to the body.
 void require_stable(const Model& model, const std::string& object, const PlacedAnchor& anchor, const char* field) {
     if (anchor.body == no_index || model.settings.theta == 1) return;
     const auto body = static_cast<std::size_t>(anchor.body);

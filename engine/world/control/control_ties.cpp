@@ -23,8 +23,8 @@ namespace skerry {
 
 namespace {
 
-/// Row of the tied body, `first`, and of the body or collider to which it is tied. Without either, it is tied to the
-/// world.
+/// `first`: row of the tied body. `second` or `collider`: row of the body or collider to which it is tied; if both are
+/// no_index, it is tied to the world.
 struct TiedObjects {
     Index first, second = no_index, collider = no_index;
 };
@@ -86,15 +86,15 @@ TiedObjects objects_of(const Model& model, const TieSettings& tie) {
     return objects;
 }
 
-/// Nearest point of a surface. If the surface has triangles: nodes `corner` (local numbers) of the triangle with the
-/// point, and barycentric coordinates `weight` of the point.
+/// Point of a surface that is nearest to a given point. If the surface has triangles: nodes `corner` (local numbers) of
+/// the triangle with the point, and barycentric coordinates `weight` of the point.
 struct OnSurface {
     Vec3 point, normal;
     std::array<Index, 3> corner{};
     Vec3 weight = Vec3::Zero();
 };
 
-/// Nearest point of the surface of `body`, which is the second body or the mesh of the collider.
+/// Point nearest to `point` on the surface of `body`, which is the second body or the mesh of the collider.
 OnSurface on_triangles(WorldState& world, const TiedObjects& objects, std::size_t body, const Vec3& point) {
     const Model& model = world.model;
     const std::optional<TrianglePoint> found = nearest_point(fitted_tree(world, body), point, infinity);
@@ -119,7 +119,7 @@ OnSurface on_shape(const ColliderGeometry& geometry, const RigidMotion& pose, co
     return {.point = found.point, .normal = found.normal};
 }
 
-/// Nearest point of the object to which a node at `point` is tied. For the world it is `point` itself.
+/// Point nearest to `point` on the object to which a node is tied. For the world it is `point` itself.
 OnSurface nearest_place(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
                         const Vec3& point) {
     const Model& model = world.model;
@@ -157,8 +157,9 @@ std::vector<Vec3> tied_points(const Model& model, const TiedObjects& objects, co
     return points;
 }
 
-/// Throws SceneError if the object to which a body is tied has no surface, or if a tied point is farther from it than
-/// the mean edge length of the tied body. The point of a ball may be anywhere unless that object is a deformable body.
+/// Throws SceneError if the object to which the body is tied has no surface, or if the distance of a tied point from
+/// this surface exceeds the mean edge length of the tied body. The point of a ball tie to an object that does not
+/// deform may be anywhere.
 void require_close(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
                    const TieSettings& tie, std::span<const Vec3> points) {
     const Model& model = world.model;
@@ -240,8 +241,8 @@ ColliderHandle handle_of_collider(const Model& model, Index collider) {
     return model.collider_map.handle_of_slot(model.colliders.slot[static_cast<std::size_t>(collider)]);
 }
 
-/// Switches the collisions of the two objects of a tie on or off. Returns whether they were on. Does nothing for a tie
-/// to the world, and returns false.
+/// Switches the collisions of the two objects of a tie on or off. Returns true if they were on before. Does nothing and
+/// returns false for a tie to the world.
 bool switch_collisions(World& world, const Model& model, std::size_t tie, bool on) {
     const BodyHandle first = handle_of_body(model, model.ties.first[tie]);
     const auto set = [&](auto other) {

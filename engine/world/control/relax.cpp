@@ -50,8 +50,9 @@ void hold_values(Model& model, Real t) {
     std::ranges::fill(model.ties.break_force, infinity);
 }
 
-/// Sets forces, tractions, acceleration fields, prescribed pressures, and tensions of cables and fibres to a share of
-/// their values at the time `t`. Gravity factors and drag keep their values. `given`: the model before hold_values().
+/// Multiplies forces, tractions, acceleration fields, prescribed pressures, and tensions of cables and fibres at the
+/// time `t` by `share`. Gravity factors and drag keep their values. `given`: the model before hold_values(), with the
+/// full values.
 void set_load_share(Model& model, const Model& given, Real t, Real share) {
     const auto set = [&](auto& table, const auto& from, std::size_t row) {
         hold_keys(table, row, share * value_at(from.keys_of(row), t));
@@ -110,14 +111,14 @@ void take_values(Model& to, Model& from) {
     to.ties.break_force = from.ties.break_force;
 }
 
-/// Sets two settings, and the step parameters that follow from them. Used before a relaxation and to restore them after
-/// it.
+/// Sets Settings::sleep and Settings::tolerance, and the step parameters that follow from them. Called before a
+/// relaxation, and after it to restore the values of the user.
 void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
     world.model.settings.sleep = sleep;
     world.model.settings.tolerance = tolerance;
     const Real kick = world.scratch.parameters.kick;
     world.scratch.parameters = step_parameters(world.model.settings, world.model.tuning);
-    world.scratch.parameters.kick = kick;  // reports of the contacts of the last step use this value [s]
+    world.scratch.parameters.kick = kick;  // force interval of the last step [s], for the forces of its contacts
 }
 
 /// Gives the relaxed world the run record that the world had before the relaxation. Only the list of contacts is built
@@ -169,8 +170,8 @@ public:
             if (moves(b)) stop_body(state_.model, b);
     }
 
-    /// Makes steps until equilibrium, `max_steps`, a failed step, or go_on() returns false. Adds the steps to the
-    /// report. Returns true if the bodies have reached equilibrium.
+    /// Makes steps until the bodies are in equilibrium, `max_steps` steps are taken, a step fails, or go_on() returns
+    /// false. Adds the steps to the report. Returns true if the bodies have reached equilibrium.
     bool run(const std::function<bool(const RelaxReport&)>& go_on, RelaxReport& report) {
         bool balanced = false;
         int calm = 0;
@@ -238,7 +239,7 @@ private:
     }
 
     /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual. A body is
-    /// slow if its momentum is at most tolerance * forces * `time`, with the time for which all bodies have been in
+    /// slow if its momentum is at most tolerance * forces * `time`. `time`: time for which all bodies have been in
     /// balance [s]. Without weights, loads and contacts, `largest_` replaces the forces.
     bool find_worst(Real time, RelaxReport& report) const {
         report.residual = report.speed = 0;
@@ -274,10 +275,10 @@ private:
     World& world_;
     WorldState& state_;
     RelaxSettings settings_;
-    UnionFind sets_;                     // sets of joined bodies
+    UnionFind sets_;                     // sets of bodies that joints, ties and the like connect
     std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;    // by body
-    std::vector<Real> kinetic_, sum_{};  // kinetic energies of the sets before and after this step, by root body [J]
+    std::vector<Real> kinetic_, sum_{};  // kinetic energies before, after this step, at the root of each set [J]
     Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
 };
 

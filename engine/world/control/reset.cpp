@@ -17,8 +17,8 @@ namespace skerry {
 
 namespace {
 
-/// Sets the impulses and forces that the last step has stored for contacts, joints, ties, cables, fibres and springs of
-/// a body to zero, because the next step would start from them. Joints return to their first coordinates.
+/// Sets to zero the impulses and forces that the last step has stored for contacts, joints, ties, cables, fibres and
+/// springs of a body, because the next step would start from them. Joints return to their first coordinates.
 void forget_impulses(WorldState& world, std::size_t body) {
     Model& model = world.model;
     const std::uint32_t slot = model.bodies.slot[body];
@@ -70,7 +70,7 @@ void forget_impulses(WorldState& world, std::size_t body) {
     }
 }
 
-/// Sets the spring strains of the Maxwell elements of a body to zero, and the corotational frames of its elements to
+/// Sets the spring strains of the Maxwell elements of a body to zero. Sets the corotational frames of its elements to
 /// `turn`, the rotation of the body since its elements were built.
 void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
     ElementBlockTable& elements = model.elements;

@@ -165,8 +165,8 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    // Nodes without a tetrahedron would get the inverse mass 0, as if they were held. Rigid bodies that share_mass
-    // handles later therefore begin with positive masses.
+    // Nodes without a tetrahedron would get the inverse mass 0, as if they were held. The nodes of rigid bodies
+    // therefore get positive masses here, which share_mass() replaces later.
     if (body.tetrahedra.empty() || body.mass) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
     add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
@@ -195,14 +195,14 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
     // Frame masses (frame_masses.h) are chosen for linear elements only. The mass forms of smoothed elements already
-    // allow steps near the stability limit, and even closer to it the energies of the highest frequencies would be less
-    // accurate.
+    // allow steps near the stability limit. Still closer to the limit, the energies of the highest frequencies would be
+    // less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     // A body that yields gets no frame masses either, because frame masses are not updated after plastic flow.
     const auto b = static_cast<std::size_t>(row);
     if (model.body_records[b].element != ElementKind::linear || model.yields(b)) return by_either;
-    // Least ratio of the stable step with frame masses to the stable step without them. With frame masses, strained
-    // bodies need a second evaluation of the stable step, which a smaller gain does not justify.
+    // Frame masses are kept if they lengthen the stable step at least by this factor. With frame masses, strained
+    // bodies need a second evaluation of the stable step, whose time a smaller gain would not save.
     constexpr Real least_gain = 1.1;
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
@@ -269,7 +269,8 @@ void take_steps(const KnownElements& known, Index row, Model& model) {
 }
 
 void remember_elements(Model& model, Index row, KnownElements known) {
-    // Limits the time of known_elements(), which compares each new mesh with the meshes of all entries.
+    // Largest number of entries. It limits the time of known_elements(), which compares each new mesh with the mesh of
+    // every entry.
     constexpr std::size_t most_known = 64;
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     known.body = row;

@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Places are stored as boxes and planes in world coordinates. A place does not move with the object for which it was
-/// added.
+/// Places are stored as boxes and planes in world coordinates. A stored place does not change if its object moves
+/// later.
 class ChangedPlaces {
 public:
     /// Adds the bounding box of a body, or of the mesh of a mesh collider, enlarged by its contact distance.
@@ -18,8 +18,8 @@ public:
     /// Adds the bounding box of a collider, or the plane of a plane collider. `now`: present time [s].
     void add_collider(const Model& model, std::size_t collider, Real now);
     bool empty() const { return boxes_.empty() && planes_.empty(); }
-    /// Wakes all sleeping bodies near a place: bodies closer to the place than their mean edge length plus the contact
-    /// distances. This takes one pass over the surfaces of sleeping bodies. Afterwards the list of places is empty.
+    /// Wakes all sleeping bodies that are closer to a place than their mean edge length plus the contact distances, in
+    /// one pass over their surfaces. Then empties the list of places.
     void wake_near(Model& model);
 
 private:

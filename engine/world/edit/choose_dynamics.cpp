@@ -12,17 +12,17 @@ namespace skerry {
 
 namespace {
 
-constexpr Real ns = 1e-9;  // a nanosecond [s]
+constexpr Real ns = 1e-9;  // one nanosecond in seconds; the costs below are in ns
 // Cost of a step of an implicit body: step_time * (number of nodes / fitted_nodes)^step_power. The law was fitted to
 // the output of profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // step_time [ns]
-// Fraction of step_time that is spent on contacts; for a cube on a face it is a half or more. It counts in every step
-// of the world, because contacts of an implicit body take part in the short steps of the other bodies even during its
-// own long step.
+// Fraction of step_time that is spent on contacts. Measured for a cube on a face: a half or more. This time is spent in
+// every step of the world, because contacts of an implicit body take part in the short steps of the other bodies even
+// during its own long step.
 constexpr Real contact_share = 0.5;
-// Cost of the contacts of a body in a pile, divided by that of a cube on a face. In piles of 27 cubes of 27 to 729
-// nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
+// Cost of the contacts of an implicit body in a pile, divided by the cost of the contacts of a cube on a face. In piles
+// of 27 cubes of 27 to 729 nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
 constexpr Real pile_contacts = 40;
 // Cost of the contacts of an explicit body in the same piles, per step and node [ns].
 constexpr Real node_contacts = 200;
@@ -38,8 +38,9 @@ constexpr Real most_strain = 0.02;  // largest strain for which linear elasticit
 constexpr Real fall = 10;           // assumed height of a fall, divided by the size of the body
 
 /// Largest strain expected in the materials of a body, under its own weight or in an impact. The impact strain is v/c,
-/// as in a bar that is stopped, with the wave speed c and the impact speed v = sqrt(u^2 + 2 g H) for the initial speed
-/// u and a fall from the height H. Without gravity nothing is known about later speeds, so g is the default gravity.
+/// as in a bar that is stopped, with the wave speed c and the impact speed v = sqrt(u^2 + 2 g H). Here u is the initial
+/// speed, and H the height of a fall. In a world without gravity nothing is known about later speeds, so g is the
+/// default gravity.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
@@ -74,7 +75,8 @@ Real cost_of_elements(std::size_t blocks) {
     return ns * element_cost * static_cast<Real>(blocks * element_lanes);
 }
 
-/// Computes the step lengths and the costs (computing time per simulated second) of an estimate.
+/// Writes to `estimate` the step lengths and the costs (computing time per simulated second) of explicit and of
+/// implicit dynamics.
 void compare_costs(const Model& model, const NewBody& body, const KnownElements& elements, DynamicsEstimate& estimate) {
     const Real others = cost_of_elements(model.elements.volume.size());
     const auto nodes = static_cast<Real>(body.nodes.size());
@@ -91,7 +93,7 @@ void compare_costs(const Model& model, const NewBody& body, const KnownElements&
     if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.deforming_step);
 }
 
-/// True if has(row) is true for the row of at least one material of a body.
+/// True if has(row) returns true for at least one material of a body. `row`: row of MaterialTable.
 bool any_material(Index material, std::span<const Index> tetrahedron_material, auto&& has) {
     const auto of_row = [&](Index row) { return has(static_cast<std::size_t>(row)); };
     return tetrahedron_material.empty() ? of_row(material) : std::ranges::any_of(tetrahedron_material, of_row);
@@ -146,7 +148,7 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
 }
 
 Index outdated_choice(const Model& model, DynamicsEstimate& now) {
-    // A choice is tested again if the step that it assumed is longer than the present step by at least this factor.
+    // A choice is tested again if the implicit step that it assumed exceeds the present one by more than this factor.
     constexpr Real much_longer = 1.5;
     if (model.implicit_nodes.size() == 0) return no_index;
     const Real step = step_with_frame(model), others = cost_of_elements(model.elements.volume.size());
@@ -160,8 +162,8 @@ Index outdated_choice(const Model& model, DynamicsEstimate& now) {
         now.deforming_step = std::max(step, model.settings.implicit_step);
         now.explicit_step = std::min(before.explicit_step, step);
         // The costs in `before` already include the bodies that existed at the first estimate, so `others` counts these
-        // bodies twice. Both new costs are too large, the explicit cost more because its step is shorter. A body
-        // therefore becomes explicit only if this certainly saves time.
+        // bodies twice. Both new costs are thus too large. The error of the explicit cost is the larger one, because
+        // its step is shorter. A body therefore becomes explicit only if this certainly saves time.
         now.explicit_cost = (others + before.explicit_cost * before.explicit_step) / now.explicit_step;
         now.implicit_cost = (others + before.implicit_cost * before.implicit_step) / step;
         now.damped_above = 0;  // an explicit body is not damped by its steps

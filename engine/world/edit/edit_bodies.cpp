@@ -23,7 +23,7 @@ namespace {
 // Initial value of uninverted_until, for tetrahedra that find_inversions has not checked yet [m].
 constexpr Real not_evaluated = -infinity;
 
-// default contact distance divided by the mean surface edge, small against the resolution of the mesh
+// default contact distance, divided by the mean edge length of the surface; small compared with the mesh resolution
 constexpr Real default_contact_distance = 0.02;
 
 Range appended(std::size_t before, std::size_t after) {
@@ -105,8 +105,8 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-/// The table rows of a new body, the lane of each of its elements in the element blocks, and for each lane the
-/// tetrahedra that its element covers.
+/// Location of a new body in the tables. `places`: lane of each element in the element blocks. `covered`: for each
+/// lane, the tetrahedra that its element covers.
 struct RowsOfBody {
     Index row;
     Range nodes, tetrahedra;
@@ -116,8 +116,8 @@ struct RowsOfBody {
 };
 
 /// Builds the elements of a body and appends them to the tables. `known`: stored results for an earlier body with the
-/// same mesh, or null. The list of elements is local, to be freed at once: it is a third as large as all tables of the
-/// body.
+/// same mesh, or null. The list of elements is a local variable, so that it is freed on return: it takes a third of the
+/// memory of all tables of the body.
 void append_elements_of(Model& model, const NewBody& body, std::span<const MaterialZone> zones,
                         const KnownElements* known, RowsOfBody& rows) {
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
@@ -130,8 +130,8 @@ void append_elements_of(Model& model, const NewBody& body, std::span<const Mater
 }
 
 /// Surface triangles of a body in local node numbers. These are the triangles given by the user, or the boundary of the
-/// tetrahedra. The boundary is read from the surface tables. A round body has no rows in these tables, so its boundary
-/// is computed.
+/// tetrahedra. The boundary is read from the surface tables. A round body has no rows in these tables, so the boundary
+/// of its tetrahedra is computed here.
 std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, const NewBody& body) {
     std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
     if (body.core_nodes > 0) {
@@ -220,7 +220,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     model.settled = false;
     model.append_outline(b);
     model.body_records[b].surface = outline(model, b, body);
-    // A round body has no edges: its triangles only draw it.
+    // A round body has no rows of edges, because its triangles are used only for drawing. The mean edge is that of the
+    // drawn mesh.
     bodies.mean_edge[b] = body.core_nodes > 0
                               ? mesh::mean_edge({{body.nodes.begin(), body.nodes.end()}, model.body_records[b].surface})
                               : mean_edge_length(model, bodies.edges[b]);

@@ -20,7 +20,7 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
 }
 
 /// Pose at time 0 of an object that has the pose `pose` at the time `now` and moves at constant velocities. It is
-/// stored beside the script, because new scripts start at time 0.
+/// stored beside the script of the object, because scripts of new objects start at time 0.
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
@@ -62,9 +62,8 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Motion of the shape of a collider. `placed`: pose of the shape if there are no keys. Keys give poses of the shape
-/// frame, not of the collider frame, as move_to and set_pose do. If no key has a rotation, the shape keeps that of
-/// `placed`.
+/// Motion of the shape of a collider. Keys give poses of the shape frame, not of the collider frame, as move_to and
+/// set_pose do. If no key has a rotation, the shape keeps the rotation of `placed`, its pose without keys.
 Motion motion_of_shape(const Motion& motion, const RigidPose& placed) {
     Motion of_shape = motion;
     if (!motion.turns())

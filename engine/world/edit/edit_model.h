@@ -1,5 +1,5 @@
-// Appends rows to the tables between steps, and changes rows (erase_gone.h removes rows). The caller records each
-// change in WorldState::edits, so that WorldState::settle updates derived data.
+// Functions that append and change rows of the tables between steps (erase_gone.h removes rows). The caller records
+// each change in WorldState::edits, so that WorldState::settle updates derived data.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct NewBody {
     Vec3 position;
     Mat3 rotation;
     Vec3 velocity, angular_velocity;
-    // mass properties that the user has given (BodySettings); the others follow from the shape
+    // mass properties that the user has given (BodySettings); those left empty are computed from the shape
     std::optional<Real> mass = {};
     std::optional<Vec3> center_of_mass = {};
     std::optional<Mat3> inertia = {};
@@ -69,8 +69,8 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
 
 /// Appends a body that consists of a surface, with or without tetrahedra. Returns its row. `stiffness_sum`: working
 /// memory with one entry per node. The caller keeps this memory between calls, so that the cost of a call depends only
-/// on the size of the new body. `trial`: results of choose_dynamics() for this body; null: results that an earlier body
-/// with the same mesh has stored are used, if there are any.
+/// on the size of the new body. `trial`: results of choose_dynamics() for this body; if null, results stored for an
+/// earlier body with the same mesh are used, if there are any.
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body, const KnownElements* trial = nullptr);
 
 // choose_dynamics.cpp
@@ -79,12 +79,12 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
 /// `tetrahedron_material`: material of each tetrahedron; empty if all have `material`.
 void require_implicit_materials(const Model& model, Index material, std::span<const Index> tetrahedron_material,
                                 const std::string& name);
-/// Throws the SceneError for the implicit body with this name, a material of which sets a loss factor.
+/// Throws SceneError, because a material of the implicit body with this name sets a loss factor above 0.
 [[noreturn]] void refuse_losses(const std::string& body);
 
 /// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
-/// `estimate`. If costs must be compared and no results of find_steps() are stored for the same mesh, computes them and
-/// writes them to `trial`. `body.dynamics` must be explicit_elastic.
+/// `estimate`. A comparison of costs needs results of find_steps(). If none are stored for the same mesh, computes them
+/// and writes them to `trial`. `body.dynamics` must be explicit_elastic.
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
                              std::optional<KnownElements>& trial);
 
@@ -115,8 +115,8 @@ struct MassProperties {
     Mat3 axes;                   // rotation from the frame of the principal axes to the mesh frame
 };
 MassProperties mass_properties(const Model& model, const NewBody& body);
-/// Adds the lumped masses of the tetrahedra to the node masses. Sets the inverse masses of these nodes, so that they
-/// can move.
+/// Adds the lumped masses of the tetrahedra to the node masses, and sets the inverse masses. An inverse mass above 0
+/// lets a node move.
 void set_masses(Model& model, const NewBody& body, Range nodes);
 /// Finds the mass forms of a body whose mass shares are known, and the frame masses of linear elements (mass_forms.h,
 /// frame_masses.h). Mass forms are dropped if they do not lengthen the stable step at rest. Frame masses are dropped if
@@ -139,7 +139,7 @@ void take_steps(const KnownElements& known, Index row, Model& model);
 /// Stores the results of find_steps for later bodies with the same mesh. `places`: lane of each element in the element
 /// blocks of the body.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
-/// Stores the results that choose_dynamics() has computed for the body `row` for later bodies with the same mesh.
+/// Stores `trial`, computed by choose_dynamics() for the body `row`, for use by later bodies with the same mesh.
 void remember_elements(Model& model, Index row, KnownElements trial);
 
 // The following functions are defined in edit_colliders.cpp. The argument `now` is the time at which the row is added
@@ -147,7 +147,8 @@ void remember_elements(Model& model, Index row, KnownElements trial);
 
 /// Returns surface properties, in which -1 marks a value that the settings leave out.
 SurfaceProperties surface_properties(const SurfaceSettings& settings);
-/// `held`: directions along which the nodes are held, as in AttachmentTable.
+/// Appends the row of an attachment and returns its index. `held`: directions along which the nodes are held, as in
+/// AttachmentTable.
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
                         const RigidPose& pose, const Motion& motion, Real now, const Mat3& held = Mat3::Identity());
 /// Removes the row of an attachment whose handle was already removed. The attached nodes become free unless another

@@ -128,8 +128,8 @@ void erase_records(std::span<const Index> row_now, std::vector<Record>& records)
     std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
 }
 
-/// Removes scripts together with their keyframes. row_without() also serves a remaining script without keyframes, whose
-/// empty range may start at a removed keyframe.
+/// Removes scripts together with their keyframes. A remaining script without keyframes has an empty range, which may
+/// start at a removed keyframe; row_without() allows this.
 void erase_scripts(std::span<const Range> gone, auto& table) {
     std::vector<Range> keys, merged;
     for (const Range& rows : gone)
@@ -166,8 +166,8 @@ void erase_colliders(const RowMoves& moves, Model& model) {
         if (collider != no_index) collider = moves.collider_now[static_cast<std::size_t>(collider)];
 }
 
-/// Renumbers the nodes and bodies of clusters. No cluster belongs to a removed body: before a body with elements is
-/// removed, all clusters are cleared. They are found again later.
+/// Renumbers the nodes and bodies of clusters. No cluster belongs to a removed body, because all clusters are cleared
+/// before a body with elements is removed, and found again later.
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)

@@ -23,7 +23,7 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
 /// body and of all later bodies; Model::extend_derived builds these patches again.
 void erase_gone(const RowMoves& moves, Model& model);
 /// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `down`: for
-/// each table, the number subtracted from references to its rows.
+/// each table, the number that is subtracted from each reference to a row of this table.
 void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
                            const OfBodyTables<Index>& down);
 /// Removes scripted colliders or attachments together with their keyframes. `gone`: removed rows in ascending order.

@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Entries of a column that belong to one row of a joining table. A column has one entry for each row, or a list of
-/// entries for each row, which Table::list_of returns.
+/// Returns the range of the entries of a column that belong to one row. A column has either one entry for each row, or
+/// a list of entries for each row (Table::list_of).
 template <class Table>
 Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) {
     if constexpr (requires { table.list_of(row); })
@@ -57,7 +57,7 @@ inline std::vector<RowLists> lists_of(AttachmentTable& t) {
     return {{&t.nodes, {t.node, t.anchor}}};
 }
 
-/// Removes the marked rows of a table and their handles. `gone`: true for each row to be removed.
+/// Removes rows of a table and their handles. `gone`: true for each row to be removed.
 template <class Table, class Handle>
 void erase_joining_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map) {
     std::vector<Index> row_now;
@@ -97,7 +97,7 @@ void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
     }
 }
 
-/// Removes the marked rows of a table and their handles, and wakes the bodies of these rows.
+/// Like erase_joining_rows(), but first wakes the bodies that the removed rows name.
 template <class Table, class Handle>
 void wake_and_erase_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map, Model& model) {
     for_each_joined(table, ColumnRole::body, [&](std::size_t row, Index body) {
@@ -111,15 +111,15 @@ void wake_and_erase_rows(const std::vector<bool>& gone, Table& table, NamedHandl
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 
-/// Names of the tables whose rows can join several bodies, such as "joints". With a `body`, only tables in which a row
-/// names this body are returned; with no_index, all of them.
+/// Names of the tables whose rows can join several bodies, such as "joints". `body`: only tables in which a row names
+/// this body are returned; no_index: all tables.
 std::vector<const char*> tables_joining(Index body, Model& model);
 
 /// Moves rows that act on one body only, such as loads, from the body `before` to the body `after` with the same mesh.
 void hand_over_rows(std::size_t before, std::size_t after, Model& model);
 
-/// Renumbers the bodies or colliders in joining rows after other bodies or colliders were removed. `role`: `body` or
-/// `collider`; `row_now`: new row of each object, by its old row in BodyTable or ColliderTable.
+/// Renumbers the bodies or colliders that joining rows name, after the removal of some bodies or colliders. `role`:
+/// `body` or `collider`; `row_now`: new row of each object, by its old row in BodyTable or ColliderTable.
 void renumber_joining_rows(ColumnRole role, std::span<const Index> row_now, Model& model);
 
 }  // namespace skerry

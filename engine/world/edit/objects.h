@@ -79,13 +79,13 @@ std::string object_name(const Model& model, HandleType object) {
 
 // Each of the following functions is called before an object is removed. `object`: a live handle.
 
-/// Switches the collisions of the two objects on again, unless another joint (or another tie, for a tie) of these
-/// objects switches them off.
+/// Switches the collisions of the two joined objects on again, unless another row of the same table (joints or ties)
+/// keeps them off.
 void prepare_removal(World& world, JointHandle joint);
 void prepare_removal(World& world, TieHandle tie);
 /// Removes the pipes of a cavity.
 void prepare_removal(World& world, CavityHandle cavity);
-/// Wakes the body on which the load acts, or all bodies.
+/// Wakes the body on which the load acts, or all bodies if the load acts on all.
 void prepare_removal(World& world, LoadHandle load);
 
 }  // namespace skerry

@@ -49,8 +49,8 @@ struct Deformation {
 };
 
 /// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large
-/// (StiffBody::becomes_large). For a free body, also computes the moments of inertia and the principal axes: of the
-/// deformed shape at large strain, of the rest shape when large strain ends.
+/// (StiffBody::becomes_large). For a free body, also computes the moments of inertia and the principal axes: at large
+/// strain those of the deformed shape, and when large strain ends those of the rest shape.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -199,7 +199,8 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
     Vec3 along = Vec3::Zero();
     for (const Index node : nodes)
         if ((place(node) - first).squaredNorm() > along.squaredNorm()) along = place(node) - first;
-    // nodes count as collinear if their distance from a line is below this fraction of the line's length
+    // Nodes count as collinear if their distance from the line between the first node and the node farthest from it is
+    // at most this fraction of the length of the line.
     constexpr Real thin = 1e-6;
     for (const Index node : nodes)
         if (along.cross(place(node) - first).norm() > thin * along.squaredNorm()) return true;
@@ -365,8 +366,8 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
 
 namespace {
 
-/// Replaces follow_node_velocities for bodies with large strain. The angular momentum is computed with the inertia of
-/// the deformed body. The nodes keep their velocities up to rounding.
+/// Last part of follow_node_velocities() for bodies with large strain. The angular momentum is computed with the
+/// inertia of the deformed body. The nodes keep their velocities up to rounding.
 void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocity) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);

@@ -18,19 +18,19 @@ void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new);
 /// body do not change.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
 
-/// The pose of a rigid or implicit body, with the centre of mass `center`, that is nearest to given node positions.
+/// Pose of a rigid or implicit body that is nearest to given node positions. `center`: centre of mass in this pose [m].
 /// `misfit`: largest distance of a node in this pose from its given position [m].
 struct RigidFit {
     Vec3 center;
     Mat3 rotation;  // rotation from the frame of the principal axes to world axes
-    Real misfit;    // m
+    Real misfit;    // [m]
 };
 RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Vec3> position);
 
 /// Pose of the mesh frame of a body. For an explicit body it is the rigid pose nearest to the deformed shape.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// True if a body can neither move nor rotate while the given nodes (local numbers) are held. This is so if the nodes
+/// True if a body can neither move nor rotate while the given nodes (local numbers) are held, which requires that they
 /// do not all lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
 /// Finds the attachments that hold whole rigid bodies or the frames of implicit bodies, and the pose of each held body
@@ -48,7 +48,7 @@ void follow_weight(Model& model, std::size_t body);
 /// Momenta and inertia of the nodes of a body, treated as point masses (Model::weight_of_node), about a given centre.
 struct NodeMotion {
     Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // [kg m/s, kg m^2/s]
-    Mat3 inertia = Mat3::Zero();                                    // kg m^2
+    Mat3 inertia = Mat3::Zero();                                    // [kg m^2]
 };
 NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& center);
 /// Sets the momentum [kg m/s] and the angular momentum about the centre of mass [kg m^2/s] of a body. The deformation
@@ -68,13 +68,12 @@ void follow_node_velocities(Model& model, std::size_t body);
 
 /// Energies and momenta of a rigid or implicit body; zero for an explicit body.
 struct RigidSums {
-    Real kinetic = 0, elastic = 0;         // J
-    Vec3 momentum = Vec3::Zero();          // kg m/s
+    Real kinetic = 0, elastic = 0;         // [J]
+    Vec3 momentum = Vec3::Zero();          // [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // about the origin [kg m^2/s]
 };
 RigidSums rigid_sums(const Model& model, std::size_t body);
-/// Energies and momenta of the free nodes of a held implicit body. The value `elastic` is an exception: it belongs to
-/// the whole body.
+/// Energies and momenta of the free nodes of a held implicit body; `elastic` is the energy of the whole body.
 RigidSums moving_sums(const Model& model, std::size_t body);
 /// Elastic forces on the nodes of an implicit body, by local node, in world axes [N].
 std::vector<Vec3> elastic_forces(const Model& model, std::size_t body);

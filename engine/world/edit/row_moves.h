@@ -46,8 +46,8 @@ struct RowMoves {
     bool any() const { return !gone.bodies.empty() || !colliders_gone.empty(); }
 };
 
-/// `bodies` and `colliders` contain a mark for each row: rows with a nonzero mark are removed. Rows beyond the last
-/// mark are not removed.
+/// Plans the removal of the rows with a nonzero mark. `bodies`, `colliders`: marks by row; rows beyond the last mark
+/// are kept.
 RowMoves row_moves(const Model& model, std::span<const std::uint8_t> bodies, std::span<const std::uint8_t> colliders);
 
 }  // namespace skerry

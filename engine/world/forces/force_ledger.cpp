@@ -58,7 +58,7 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
-/// True for an implicit body, on which forces act during the whole step and not during a kick
+/// True for an implicit body. Its forces act for the length of the step; those of other bodies act for the kick
 /// (docs/methods/time_stepping.md 1.5).
 bool is_implicit(const Model& model, std::size_t body) {
     return model.bodies.implicit[body].size() > 0;
@@ -201,8 +201,8 @@ Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
 }
 
 bool ForceLedger::shows_contacts() const {
-    // A step may leave gaps open that are a small part of the distance travelled in the step. Contacts close these gaps
-    // in a call that is at least a hundredth as long as the step before the call.
+    // A step may leave gaps open that are a small part of the distance travelled in it. In a call much shorter than
+    // that step, bodies may not close these gaps, and contact forces would be missing.
     constexpr Real shortest_share = 0.01;
     return call_.whole > 0 && call_.whole >= shortest_share * step_before_;
 }
@@ -232,8 +232,8 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
             if (rigid) add_position(n, model.weight_of_node(n));
             noise += model.weight_of_node(n) * digits * model.nodes.velocity[n].norm();
         }
-    // The reaction counts as measured if its rounding error is at most this fraction of the force, or at most this
-    // acceleration of the held nodes [m/s^2].
+    // Accepted rounding error of a reaction: small_share times the force, plus the force that gives the held nodes this
+    // small_acceleration [m/s^2].
     constexpr Real small_share = 0.01, small_acceleration = 1e-3;
     return noise <= small_share * impulse.norm() + small_acceleration * held * call_.whole;
 }
@@ -273,8 +273,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 }
 
 /// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
-/// them, adds their mean forces over the time in which both were still. If a body was awake, prolongs this time by the
-/// step, or clears the sums over it if a body has moved.
+/// them, adds the impulse of the mean force from the time in which both were still. If a body was awake, adds the step
+/// to this time, or restarts the time and its sums if a body has moved.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -358,7 +358,7 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        // the momentum of a rigid body is not the sum over its nodes, whose masses do not give its inertia
+        // the momentum of a rigid body is no sum over its nodes, because the node masses do not give its inertia
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
         // nodes that are held along single directions keep their velocities in a drift
         if (!holds_completely(model.attachments.held[a])) continue;

@@ -29,8 +29,9 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Values for an object or pair in one call of advance: the largest mean force of a step, the number of contacts in
-    /// the last step, and the largest number in a step. Also contains the sums over the present step.
+    /// Values for an object or pair in one call of advance: the largest of the mean forces of its steps, the number of
+    /// contacts in its last step, and the largest number of contacts in a step. Also contains the sums over the present
+    /// step.
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
@@ -71,8 +72,9 @@ public:
     /// True if the call was long enough for contact forces to be measured. Gaps that the step before the call has left
     /// open may stay open during a call that is much shorter than that step.
     bool shows_contacts() const;
-    /// True if the force of an attachment counts as measured: rounding errors of positions and velocities have changed
-    /// it by little and, on a rigid body, shows_contacts() is true. `attachment`: row of AttachmentTable.
+    /// True if the force of an attachment counts as measured. This needs small rounding errors of positions and
+    /// velocities and, on a rigid body, that shows_contacts() is true. On a sleeping body the force counts as measured
+    /// in every call with a step. `attachment`: row of AttachmentTable.
     bool shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const;
 
     /// Starts to measure forces. For sleeping bodies, the contact and attachment forces of the last step before they

@@ -103,8 +103,9 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
-    // In a step, forces act on implicit bodies for its length, and on other bodies for the kick. Summed over a call
-    // with varying step length, these times differ. If they differ too much, no mean force on the collider is defined.
+    // In each step, forces act on implicit bodies for the step length, and on other bodies for the kick. If the step
+    // length varies in the call, the sums of these two times differ. If they differ too much, no mean force on the
+    // collider is defined.
     Real shortest = infinity, longest = 0;
     bool touched = false, awake = false;
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {

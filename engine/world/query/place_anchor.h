@@ -28,8 +28,8 @@ PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::st
 std::string title_of_end(const Model& model, Index body, Index collider);
 std::string title_of_end(const Model& model, const Anchor& anchor);
 
-/// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are means over the
-/// last step, as the velocities of nodes are.
+/// Data from which positions and velocities of anchors are computed between steps; valid until the world changes. The
+/// velocities of colliders are means over the last step, like those of nodes.
 class AnchorsBetweenSteps {
 public:
     explicit AnchorsBetweenSteps(const WorldState& world);

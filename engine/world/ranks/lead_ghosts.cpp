@@ -1,5 +1,5 @@
-// Led ghosts: ghosts for which only the owner computes forces. The other ranks that hold the body receive its predicted
-// velocities from the owner.
+// Led ghosts: copies of a body for which only the rank that owns the body computes forces. The ranks with a copy
+// receive the predicted velocities of the body from that rank.
 #include <algorithm>
 #include <cstddef>
 #include <span>

@@ -1,4 +1,4 @@
-// Names of bodies in reports, which are equal on all ranks.
+// Names of bodies in reports. All ranks report the same name for a body.
 #include "engine/world/step/step.h"
 
 namespace skerry {

@@ -37,11 +37,11 @@ struct RankFindings {
     int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
     bool pushed = false;          // RegionTable::pushed
     bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
-    bool ghosts_expired = false;  // a body may come near a rank that does not hold it
+    bool ghosts_expired = false;  // a body may leave its box, or the last rank search was too many steps ago
     bool stop = false;            // a callback of World::advance has asked to end the call
-    bool wakes = false;           // a body with several holders wakes in this step
-    bool may_rest = false;        // a body with several holders may be still long enough to sleep after this step
-    // Properties of the next step:
+    bool wakes = false;           // a body that several ranks hold wakes in this step
+    bool may_rest = false;        // a body that several ranks hold may fall asleep after this step
+    // `moves` and `far` tell agree_to_start() whether the ranks must communicate before the next step.
     bool moves = false;    // a body is awake or has a speed
     bool far = false;      // a body may be too far from the origin (check_distance)
     RunCounters counters;  // contacts, regions and solver work of the attempt (count_step)

@@ -24,8 +24,8 @@ struct RankChannel {
     Ranks* ranks = nullptr;
 };
 
-/// Sums over the steps since the last call of join_records(), for the parts that this rank computes. join_records()
-/// adds them to the records of the run.
+/// Sums over the steps since the last call of join_records(), over the bodies and contacts that this rank computes.
+/// join_records() adds them to the records of the run.
 struct RankShare {
     Real dissipated = 0, plastic_work = 0;  // see RunCounters [J]
     Balance balance;                        // only its sums are used
@@ -38,15 +38,15 @@ struct PredictionMail : RankMail {
     std::vector<MailReader> reader;  // by peer: reads `in`
 };
 
-/// Message about a set of touching bodies that one rank has found: one entry for each body of the set that has several
-/// holders.
+/// Entry of the message about a set of touching bodies that one rank has found. The message has an entry for each body
+/// of the set that several ranks hold.
 struct SetMember {
     Index place;         // row of the body in the undivided world
     Index set;           // row of the first body of the set on the rank that has found the set
     Index must_stay_up;  // nonzero if a body of the set must stay awake
 };
 
-/// Working memory for deciding which bodies with several holders fall asleep or wake (sleep_over_ranks.cpp).
+/// Working memory of the stages that let bodies fall asleep or wake if several ranks hold them (sleep_over_ranks.cpp).
 struct RankSleep {
     Column<std::uint8_t> asleep;  // by body
     Column<Real> still_time;      // by body [s]
@@ -70,11 +70,12 @@ struct BodyRequest {
 struct LabelRounds {
     static constexpr int least = 2;
     int count = least;   // number of rounds in each attempt at a step, equal on all ranks
-    int needed = least;  // greatest number of rounds that a step has needed since the last check
-    int steps = 0;       // number of steps since the last check
+    int needed = least;  // greatest number of rounds that an attempt has needed since the last check
+    int steps = 0;       // number of attempts since the last check
 
     /// Adjusts `count` to the number of rounds that an attempt has needed. More than `count` means that the labels had
-    /// not settled: the next attempt has one more round. Every 500 steps `count` falls to the greatest number needed.
+    /// not settled: the next attempt has one more round. After 500 attempts without such an increase, `count` falls to
+    /// the greatest number needed since the last check.
     void note(int rounds) {
         constexpr int steps_between_checks = 500;
         if (rounds > count) {

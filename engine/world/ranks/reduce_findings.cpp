@@ -140,8 +140,8 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
     found.table.beyond_lists = tested && all.beyond_lists;
     found.crossings = tested ? all.crossings : 0;
     if (!tested || all.beyond_lists || all.again_over_ranks()) found.table.found_count = 0;
-    // A nonzero number of crossings keeps the stages that commit the step from running. judge() does not read it,
-    // because it returns again_over_ranks first.
+    // A nonzero number of crossings keeps the stages that commit the step from running. judge() does not read this
+    // number, because it checks for again_over_ranks first.
     if (all.again_over_ranks()) found.crossings = 1;
 }
 

@@ -47,9 +47,9 @@ void copy(std::span<const Row> from, Column<Row>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Lists the sleeping bodies with several holders that this rank wakes. Bodies that wake because a link, such as a
-/// joint, connects them to an awake body are left out: every holder finds these itself. Also notes whether a body with
-/// several holders may fall asleep in this step.
+/// Lists the sleeping bodies that this rank wakes and other ranks hold too. Bodies that wake because a link, such as a
+/// joint, connects them to an awake body are left out, because every rank that holds them finds them itself. Also notes
+/// whether a body that several ranks hold may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& mine) {
@@ -69,7 +69,7 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
     mine.wakes = !memory.woken.empty();
 }
 
-/// Marks in `pressed` the bodies that any rank wakes, so that wake_bodies wakes them here.
+/// Marks in `pressed` the bodies that any rank wakes, so that wake_bodies wakes them on this rank.
 void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::uint8_t>& pressed,
                 RankChannel& channel) {
     pressed.resize(bodies.place.size(), 0);

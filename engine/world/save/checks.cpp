@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-/// True for columns that may contain infinity. Infinity means that there is no bound, or that a lane of an element
+/// True for columns that may contain infinity. Infinity means that a limit does not apply, or that a lane of an element
 /// block is unused.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 21> paths{"watch/step",

@@ -22,9 +22,10 @@ void check_model(const SavedFile& file, Model& model);
 void check_masses(const SavedFile& file, const Model& model);
 /// Checks the tables whose rows join bodies or act on them, such as joints. Bodies must have been checked.
 void check_joining_tables(const SavedFile& file, Model& model);
-/// Checks pairs of materials, surface sets, and materials of colliders.
+/// Checks material pairs, surface sets and the materials of colliders.
 void check_surface_rules(const SavedFile& file, const Model& model);
-/// Checks pairs, warm-start impulses and data of the contact search. Surfaces must have been built.
+/// Checks the pairs of close objects, the warm-start impulses and the data of the contact search. Surfaces must have
+/// been built.
 void check_cache(const SavedFile& file, const Model& model, ContactCache& cache);
 void check_candidates(const SavedFile& file, const Model& model, const PairTable& pairs);
 /// Checks the contacts of the last step.

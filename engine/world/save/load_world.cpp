@@ -54,7 +54,7 @@ private:
             file_.complain(path, kind_of_array(array.number, array.width), expected);
         return array;
     }
-    /// Returns the number of rows of a column. For a column of structs it is that of the first member.
+    /// Returns the number of rows of a column. For a column of structs, this is the number of rows of the first member.
     std::size_t rows_of(const std::string& path, const RowType& type) const {
         if (type.members == nullptr) return array(path, type).rows;
         const Member& first = type.members().front();
@@ -127,15 +127,15 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.rebuild_outlines();
     model.derive_all();
     find_holders(model);
-    // If the last force element was removed just before saving, the next step still counts the work of its last forces.
-    // note_forces finds this out only if `forced` was true before, so it is set here.
+    // If the last force element was removed just before saving, the next step still counts the work of its last forces,
+    // and `forced` must stay true. note_forces keeps it true only if it was true before the call, so it is set here.
     model.forced = true;
     note_forces(model);
     model.links_open = true;
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);
-    // this column is not saved; without this resize, only a search of all pairs would give it the right size
+    // this column is not saved; only a search of all pairs would resize it, and the next step may search fewer
     world.cache.search.memory.sphere.resize(model.bodies.slot.size());
     put_limits(saved, file, world.record.limits);
     put_start(saved, file, world.record);

@@ -16,7 +16,7 @@ namespace skerry {
 
 namespace {
 
-// size of the number that is the length of the header [bytes]
+// size of the first number in a file, which is the length of the header [bytes]
 constexpr std::size_t length_bytes = sizeof(std::uint64_t);
 constexpr std::size_t checksum_digits = 16;
 constexpr std::string_view file_title = "Skerry world, version ";
@@ -246,7 +246,7 @@ void require_file_start(const std::string& name, std::span<const std::byte> star
     const std::size_t end = checksum_begin() + checksum_digits;
     const std::string_view behind = text.substr(std::min(end, text.size()));
     std::uint64_t data_bytes = 0;
-    // so that the sum of the three lengths below does not overflow
+    // largest length accepted; the sum of the three lengths below then does not overflow
     constexpr std::uint64_t most = std::uint64_t{1} << 62;
     if (!text.substr(length_bytes).starts_with(header_opening()) || !behind.starts_with(behind_checksum) ||
         std::from_chars(behind.data() + behind_checksum.size(), text.data() + text.size(), data_bytes).ec !=

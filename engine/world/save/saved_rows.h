@@ -61,7 +61,7 @@ struct SavedRows {
     SavedSets sets;
     SavedVisuals visuals;
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
-    // names of the objects of each table that for_each_joining visits, by name of the table; empty: no name was given
+    // by name of a table that for_each_joining visits: names of the objects in the table; empty text: no name
     std::map<std::string, Ragged<std::uint8_t>> object_name;
     Column<ColliderShape> shape_kind;  // by collider: index of the alternative of Shape
     // members of the shape in the order of their declaration, filled up with zeros

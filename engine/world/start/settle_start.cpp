@@ -74,8 +74,8 @@ private:
         refuse_overlap(report_of(model_, found), others_, why);
     }
 
-    /// Inverse mass of a body [1/kg], or 0 for a body that must not move. These are held bodies, bodies that have made
-    /// a step, and mesh colliders.
+    /// Inverse mass of a body [1/kg], or 0 for a body that must not move. These are held bodies, bodies that an earlier
+    /// call of settle_start has checked, and mesh colliders.
     Real mobility(Index body) const {
         const auto b = static_cast<std::size_t>(body);
         const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.body_records[b].settled ||
@@ -132,7 +132,8 @@ private:
     /// Adds the gap that an overlap requires to the list of its pair, in place of earlier gaps in nearly the same
     /// direction. A pair has a list because a body in a corner of another object needs gaps in several directions.
     void ask_for(const PairOverlap& found) {
-        constexpr Real about_the_same = 0.9;  // cosine of the angle between two directions
+        // gaps replace each other if the cosine between their directions is above this
+        constexpr Real about_the_same = 0.9;
         const Vec3& direction = found.overlap.direction;
         const Gap gap{direction, shift_along(found.pair, direction) + found.overlap.depth + search_.margin(found.pair)};
         std::vector<Gap>& gaps = gaps_[found.pair];
@@ -162,7 +163,8 @@ private:
 
     const Model& model_;
     StartSearch& search_;
-    std::map<StartPair, std::vector<Gap>> gaps_;  // the order of the pairs decides the order of the shifts
+    // sorted, because the result depends on the order in which pairs are shifted
+    std::map<StartPair, std::vector<Gap>> gaps_;
     std::size_t others_ = 0;  // number of overlaps in addition to the one that an error message describes
 };
 

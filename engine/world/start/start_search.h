@@ -47,8 +47,8 @@ public:
     const Vec3& shift(Index body) const { return shift_[static_cast<std::size_t>(body)]; }
     /// Edge lengths of the bounding box of a body [m].
     Vec3 extent(Index body) const;
-    /// Gap that remains between two objects after they are moved apart [m]: their contact distance, but at most a
-    /// fraction of the mean edge length.
+    /// Gap that remains between two objects after they are moved apart [m]: half the sum of their contact distances (0
+    /// for an analytic collider), but at most a fraction of the mean edge length.
     Real margin(const StartPair& pair) const;
     /// True if a body has a closed surface or tetrahedra, and therefore a thickness. A body that overlaps it by more
     /// than half of the thickness may be moved out on the wrong side.

@@ -11,7 +11,7 @@ namespace skerry {
 struct FieldCache::Data {
     Lock lock;
     std::shared_ptr<const OwnElements> elements;
-    std::vector<std::shared_ptr<const RecoveryPlan>> plans;  // in the order of their last use
+    std::vector<std::shared_ptr<const RecoveryPlan>> plans;  // in the order of their last use, the most recent last
 };
 
 FieldCache::FieldCache() : data_(std::make_unique<Data>()) {}

@@ -35,7 +35,8 @@ public:
     ~FieldCache();
 
     std::shared_ptr<const OwnElements> elements(const std::function<OwnElements()>& build) const;
-    /// Plan for some nodes of the body. Plans for the 64 lists of nodes that were used last are kept.
+    /// Plan by which stress and strain at some nodes of the body are computed. Plans for the 64 lists of nodes that
+    /// were used last are kept.
     std::shared_ptr<const RecoveryPlan> plan(std::span<const Index> nodes,
                                              const std::function<RecoveryPlan()>& build) const;
 

@@ -60,10 +60,10 @@ enum class GivenMass : std::uint8_t { none, mass, all };
 template <>
 inline constexpr std::uint64_t value_count<GivenMass> = 3;
 
-/// Data of a body that are not stored in tables. They serve users and files.
+/// Data of a body that are not stored in tables. They serve users, files and the building of tables.
 struct BodyRecord {
     std::string name;
-    ElementKind element;  // element kind in use; never `smoothed`, which stands for one of two others
+    ElementKind element;  // kind in use: for `smoothed`, either edge_smoothed or edge_node_smoothed
     ElementKind
         requested_element;  // element kind requested by the user; used again when the dynamics of the body change
     std::vector<std::array<Index, 4>> tetrahedra;  // corners: node numbers within the body
@@ -201,7 +201,7 @@ struct Model {
     Column<Real> force_damping, force_drag;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
-    // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
+    // True if any body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
     bool any_asleep = false;
     bool any_idle = false;  // true if a body is idle in this step (BodyTable::idle)
 
@@ -272,8 +272,8 @@ struct Model {
     /// Mass of a node [kg]. If the nodes share the mass of a rigid body (shares_mass), the mass of the body divided by
     /// its number of nodes, because NodeTable::mass may then be <= 0.
     Real weight_of_node(std::size_t node) const;
-    /// Inverse of weight_of_node; 0 for a node that belongs to no tetrahedron of its body. It is the inverse mass of a
-    /// node that no attachment holds [1/kg].
+    /// Inverse mass of a node that no attachment holds: the inverse of weight_of_node, or 0 if that mass is 0, as for a
+    /// node of no tetrahedron [1/kg].
     Real free_inverse_mass(std::size_t node) const;
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));

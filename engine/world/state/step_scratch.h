@@ -106,8 +106,8 @@ inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inve
 struct KeptVelocities {
     Column<Vec3> velocity;       // node velocities at the start of the step [m/s]
     Column<Vec3> velocity_next;  // node velocities at the end of the step as predicted without contacts [m/s]
-    // Positions of nodes, and centres of mass of rigid and implicit bodies, at the start of the step [m]. These and the
-    // next columns are stored only if there are such bodies.
+    // Positions of nodes, and centres of mass of rigid and implicit bodies, at the start of the step [m]. These two
+    // columns and the following ones are stored only if there are rigid or implicit bodies.
     Column<Vec3> position, center;
     // `rotation` and `axes` of rigid and implicit bodies at the start of the step (RigidBodyTable). At large strain the
     // axes of an implicit body change in the step.

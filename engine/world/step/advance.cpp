@@ -132,7 +132,7 @@ void note_inversions(WorldState& world, StepReport& report) {
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
 }
 
-/// Records in the report which body is unstable at Settings::step_size.
+/// If a body is unstable at Settings::step_size, counts the step and names the body in the report.
 void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
@@ -194,10 +194,10 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
-/// Fetches bodies from other ranks after an attempt that lacked some bodies. Returns false if none was missing or
-/// outdated. Otherwise the next attempt must compute the forces anew (h = 0 marks them as unknown), because new ghosts
-/// have no forces. The assumed stiffness of clusters is then restored: the next attempt must stiffen the same clusters
-/// again, so that its forces contain the impulses of this change.
+/// Fetches bodies from other ranks if the last attempt lacked bodies or new holders must be found. Otherwise does
+/// nothing and returns false. After a fetch the next attempt must compute the forces anew (h = 0 marks them as
+/// unknown), because new ghosts have no forces. The assumed stiffness of clusters is restored, so that the next attempt
+/// stiffens the same clusters again and its forces contain the impulses of this stiffening.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
@@ -277,7 +277,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
-    // force elements read all nodes in every step, so nodes that only draw round bodies must be up to date then
+    // if there are force elements, they read all nodes in every step, so nodes that only draw round bodies must be up
+    // to date
     world.scratch.parameters.draws_late = !model.forced;
     // Energy that clusters have gained since the last committed step [J]. `stiffened_before`: this energy before the
     // attempt that computed the present forces; `stiffened` is reset to it if these forces are discarded.
@@ -285,7 +286,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
     bool check_at_end = false;
-    // With ranks, the sums of this rank are added to those of all ranks by join_records.
+    // With ranks, each rank sums the share of its own bodies, and join_records adds all shares.
     Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
     stops = world.ranks.all.stop = false;
@@ -312,7 +313,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
             blame(world, report);
             break;
         }
-        // Attempts with longer lists or with crossings must keep the length of the step, for which these were found.
+        // Attempts with longer lists or with crossings must keep the step length for which the lists or crossings were
+        // found.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
@@ -346,7 +348,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         stops |= !heard;
         if (!heard && !world.ranks.on()) break;
     }
-    // The last step of a call informs the ranks too late for the check before the next step.
+    // A rank may have asked to stop in the last step. The loop then ends before its check of all.stop.
     if (!(left > 0) && world.ranks.all.stop) report.status = StepStatus::stopped;
     clock.long_step = {};                // no long step continues in the next call
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
@@ -358,8 +360,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         drift(0);
         world.query_trees.forget();  // a query during the steps may have fitted the trees to other positions
         note_held(held_in_surfaces(world), world, report);
-        // Clusters are updated here. Otherwise the first step of the next call would add this energy, which belongs to
-        // this call.
+        // Updates stiffened clusters now. Otherwise the first step of the next call would count the energy of this
+        // update, which belongs to the present call.
         stiffened += follow_stiffening(model);
         balance.work += stiffened;
     }

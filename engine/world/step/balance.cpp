@@ -20,7 +20,7 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    // sum of the magnitudes of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
+    // sum of magnitudes: of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
     Real momentum_size = 0;  // [kg m/s]
     bool damps_held_body = false, holds_implicit_element = false;
 

@@ -16,9 +16,9 @@ struct WorldState;
 /// whole run. The balance is opened at the first check after such a change.
 struct Balance {
     bool open = false;
-    // True if all exchanged momentum is measured. False while a damped body is held, or a held node belongs to an
-    // implicit element. The held nodes then take up momentum that is not measured, through damping or through the
-    // inertia of the element.
+    // True if all exchanged momentum is measured. False if a damped body was held when the balance was opened, or if a
+    // held node has belonged to an implicit element since then. The held nodes then take up momentum that is not
+    // measured, through damping or through the inertia of the element.
     bool momentum_known = true;
     std::uint64_t steps = 0;  // number of steps since the balance was opened
     // values when the balance was opened
@@ -37,7 +37,7 @@ struct Balance {
     void close() { open = false; }
 };
 
-/// Adds the impulse and work of the surroundings on the bodies in a committed step, minus the energy that it
+/// Adds a committed step: the impulse of the surroundings on the bodies, and their work minus the energy that the step
 /// dissipated.
 void add_step(const StepScratch& step, Balance& balance);
 

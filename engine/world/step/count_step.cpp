@@ -41,8 +41,8 @@ void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
     counters.largest_region = largest;
 }
 
-/// Replaces the worst error by `error` if this is larger, or equal in a region with more contacts. `region`: number of
-/// contacts of the region with this error.
+/// Replaces the worst error by `error` if `error` is larger, or if it is equal and its region has more contacts.
+/// `region`: number of contacts of the region with this error.
 void note_error(Real error, Index region, RunCounters& counters) {
     if (error < counters.worst_error || (error == counters.worst_error && region <= counters.worst_region)) return;
     counters.worst_error = error;

@@ -1,7 +1,8 @@
-// The drifts of leapfrog outside of steps. A drift moves positions, but not velocities. The first drift of a call takes
-// half of the first step, and the last drift half of the last step, so that positions and velocities at both ends of a
-// call belong to one time. If the step length changes, a drift between two steps takes half the difference. Every kick
-// then lies in the middle of its step, and each step is symmetric in time.
+// The drifts of leapfrog outside of steps. A drift moves positions, but not velocities. The first drift of a call moves
+// positions ahead by half of the first step. The steps keep this lead, and the last drift takes back half of the last
+// step, so that positions and velocities at both ends of a call belong to one time. If the step length changes, a drift
+// between two steps changes the lead by half the difference. Every kick then lies in the middle of its step, and each
+// step is symmetric in time.
 #include <algorithm>
 
 #include "engine/world/step/step.h"

@@ -11,10 +11,12 @@ namespace skerry {
 
 namespace {
 
-// Stands for the number of crossings of a body that is not checked, because this number cannot have changed.
+// Stands for the number of crossings of a body that is not checked here, because this number cannot have changed or
+// another rank owns the body.
 constexpr Index unchanged = -1;
 
-/// True if the body may have begun or ceased to cross itself since the last check.
+/// True if this rank must check the body: it owns the body, and the body may have begun or ceased to cross itself since
+/// the last check.
 bool may_have_changed(const Model& model, std::size_t b) {
     return model.bodies.kind[b] == BodyKind::deformable && !model.is_rigid(b) && !model.bodies.asleep[b] &&
            model.bodies.unstrained[b] == 0 && !model.bodies.is_ghost(b);

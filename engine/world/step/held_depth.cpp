@@ -45,8 +45,8 @@ bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& p
 }
 
 /// Updates `deepest` with held nodes of `body` inside `other`. Only nodes whose nearest triangle has three held nodes
-/// count. A node in front of its nearest triangle is outside; only for all other nodes the slow winding number, a sum
-/// over all triangles, is computed. `pair`: ContactKey::pair.
+/// count, because contacts resolve other overlaps. A node in front of its nearest triangle is outside; only for all
+/// other nodes the slow winding number, a sum over all triangles, is computed. `pair`: ContactKey::pair.
 void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
     const Model& model = world.model;
     const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));

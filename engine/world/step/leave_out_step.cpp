@@ -41,8 +41,8 @@ bool a_force_changes(const Model& model, Real time, Real h) {
     });
 }
 
-/// True if the stable step of a stored shape is still to be evaluated, for which the stages must run. The body may have
-/// fallen asleep after its shape was stored.
+/// True if stable steps of stored shapes are still to be evaluated. A stage does this, so the step must not be skipped.
+/// Such a body may have fallen asleep after its shape was stored.
 bool checks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;

@@ -30,8 +30,8 @@ struct ForceElement {
     void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
     // For each body, raises the entry of `of_body` to this force element's bound of a damping rate [1/s], if that is
-    // larger. In a step of length h, dampers must reduce no velocity to less than exp(-rate h) times its value. The
-    // rate limits the stable step.
+    // larger. A rate is such a bound if in a step of length h the dampers reduce no velocity below exp(-rate h) times
+    // its value. The rate limits the stable step.
     void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
     // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. These
     // forces limit the stable step too, because they are computed with the velocities at the start of the step.

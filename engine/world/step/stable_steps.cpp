@@ -155,8 +155,9 @@ public:
     void take(std::size_t b, Real step) {
         // More elements of a body become implicit when its stable step is shorter than goal_ / worth_clusters. They are
         // those that are unstable at the step length reserve * goal_. With reserve > 1 a body without clusters stays
-        // stable until the next evaluation. A body that already has clusters gets fewer new ones, and later, because
-        // elements stay implicit when strain decreases, although their stable step then grows again.
+        // stable until the next evaluation. In a body that already has clusters, fewer elements become implicit, and
+        // only at larger strain, because elements stay implicit when strain decreases, although their stable step then
+        // grows again.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -268,7 +269,7 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round) {
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target =
         static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(watch.first_piece[bodies.slot.size()])));
-    // saved worlds contain a row for every node, so unused rows are 0
+    // unused rows are set to 0, because saved worlds contain them too
     watch.position.resize(model.nodes.position.size(), Vec3::Zero());
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());

@@ -14,8 +14,8 @@ void list_step_again(WorldState& world);
 
 // count_step.cpp
 
-/// Returns the counters of one step, for the results of the contact solve. The energies among them are zero; commit()
-/// adds those to the run itself. `unstrained`: StepFindings::unstrained.
+/// Computes the counters of one step from the results of its contact solve. Their energies are zero, because commit()
+/// adds the energies of a step to the run itself. `unstrained`: StepFindings::unstrained.
 RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
                        const NewtonCounts& newton, Index unstrained);
 /// Adds the sums of `from` to those of `into`, except for sums of energy. Each maximum in `into` becomes the
@@ -100,7 +100,8 @@ void list_rows_taken_back(WorldState& world, TaskGraph& graph);
 /// skipped in which neither the collider nor an attachment of the body moves, because their depth has not changed.
 HeldDepth held_in_shapes(const WorldState& world, bool all);
 /// Largest depth, at the present time, of a held node of one body or mesh collider behind a triangle of another one, if
-/// the three nodes of the triangle are held too. Refits the bounding volume hierarchies of the two.
+/// the three nodes of the triangle are held too. Refits the bounding volume hierarchies of the objects that it
+/// compares.
 HeldDepth held_in_surfaces(WorldState& world);
 
 // note_forces.cpp
@@ -133,7 +134,7 @@ Real reported_step(const Model& model, Index* body = nullptr);
 Real trusted_step(const Model& model, Index* body = nullptr);
 /// Longest step that would be taken after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
-/// Evaluates the stable step of one body for the node positions `position` [s]. `stiffness_sum`: working memory, by
+/// Evaluates the stable step [s] of one body for the node positions `position`. `stiffness_sum`: working memory, by
 /// node.
 Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
                           Column<Real>& stiffness_sum);
@@ -237,8 +238,8 @@ void check_balance_after_motion(WorldState& world);
 // find_self_crossings.cpp
 
 /// Updates the list of bodies whose surface crosses itself (WorldReport::self_crossings) for the present positions.
-/// Skips bodies that cannot have changed: rigid, sleeping and unstrained ones. Writes the boxes of the trees in
-/// `model`. `places`: working memory with a row for each body.
+/// Skips rigid, sleeping and unstrained bodies, whose crossings cannot have changed, and ghosts. Overwrites the
+/// bounding boxes of `model.bvh`. `places`: working memory with a row for each body.
 void find_self_crossings(Executor& executor, Model& model, Real time, Column<Index>& places,
                          std::vector<SelfCrossing>& crossings);
 

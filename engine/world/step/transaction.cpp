@@ -22,8 +22,8 @@ constexpr int tries_at_one_length = 4;
 
 /// A step in which surfaces cross is repeated with half its length, if it is longer than StepPlan::regular divided by
 /// this factor. In the next steps the length grows again. Limits predicted from the speed of deformation are at least
-/// regular / most_shortening. The length is bounded, not the number of halvings: halvings in successive steps would
-/// make steps shorter and shorter.
+/// regular / most_shortening. The bound applies to the length and not to the number of halvings, because a few halvings
+/// in each of many steps would make steps shorter and shorter.
 constexpr Real most_shortening = 128;
 
 /// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length, if
@@ -145,7 +145,7 @@ void flow(WorldState& world) {
     world.scratch.findings.plastic = yield_blocks(world, world.model.awake_elements(), world.model.all_blocks());
 }
 
-/// Clears the mark `unstrained` of all bodies in contact. Must be called after a push-out, because it can deform bodies
+/// Clears the mark `unstrained` of all bodies in contact. Must be called after a push-out, which can deform bodies
 /// without changing their velocities.
 void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
     for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
@@ -329,8 +329,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     world.cache.crossings.beyond_lists = false;
     world.cache.crossings.found_count = 0;
     // Largest number of repetitions of an attempt with longer contact lists. Several may be needed, because contacts
-    // found in the longer lists change the motion, which may then exceed the lists again. After that, such pairs count
-    // as crossings.
+    // found in the longer lists change the motion, which may then exceed the lists again. After that, pairs that come
+    // near enough to cross without being in the lists count as crossings.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -350,8 +350,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // The shorter attempt has another motion, so it finds crossings anew. If the attempt found an inversion
-            // instead of a crossing, the crossings of earlier attempts remain contacts.
+            // The shorter attempt has another motion, so it finds crossings anew. If the abandoned attempt found an
+            // inversion instead of a crossing, the crossings of earlier attempts remain contacts.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world);
             attempt = limits_of_shorter_attempt(world, plan, attempt);

@@ -45,7 +45,7 @@ struct AttemptLimits {
     // bound grows in each committed step.
     Real longest = infinity;
     Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation at joints and ties [s]
-    Index fastest = no_index;      // row in the undivided world of the body that causes this bound
+    Index fastest = no_index;      // row in the undivided world of the body that causes `slow_enough`
     int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
     int with_crossings = 0;        // number of attempts with this step length in which features crossed
     bool over_ranks = false;       // true after an attempt at this step that all ranks have abandoned together
@@ -57,8 +57,8 @@ struct AttemptLimits {
     Real at_most() const { return std::min(longest, slow_enough); }
 };
 
-/// Returns the longest step in which the fastest element deforms by no more than is allowed, but at least `stable` /
-/// 128 [s]. `stable`: upper bound of the step length by all other limits [s].
+/// Returns the longest step [s] in which the fastest element deforms by at most 90 % of the allowed amount, but at
+/// least `stable` / 128. `stable`: upper bound of the step length by all other limits [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
 /// Attempts the planned step within the limits `attempt`. Returns the outcome, and updates `attempt` for the next

@@ -57,9 +57,9 @@ Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std:
 
 }  // namespace
 
-// A spring of stiffness k between anchors with the inverse masses u and v, on two bodies, adds a matrix to the squared
-// frequencies whose blocks have the norms k u, k sqrt(u v) and k v. The block form of Gershgorin's theorem shows
-// that the largest squared frequency grows by at most the largest sum of norms in a row.
+// Squared frequencies are eigenvalues of M^-1/2 K M^-1/2. A spring of stiffness k between anchors on two bodies, with
+// the inverse masses u and v, adds a matrix whose blocks have the norms k u, k sqrt(u v) and k v. The block form of
+// Gershgorin's theorem shows that the largest squared frequency grows by at most the largest sum of norms in a row.
 void add_spring_rates(Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     for (std::size_t s = 0; s < springs.size(); ++s) {

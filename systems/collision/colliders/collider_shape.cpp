@@ -61,7 +61,8 @@ Index flat_place_count(ColliderShape shape) {
     return 0;
 }
 
-/// Returns a convex shape that contains the collider.
+/// Returns a convex shape that contains the collider, centred at hull_centre(): for a bucket the cylinder around it,
+/// else the collider itself.
 ColliderGeometry hull_of(const ColliderGeometry& geometry) {
     if (geometry.shape != ColliderShape::bucket) return geometry;
     const Vec3& size = geometry.size;

@@ -26,13 +26,13 @@ Index collider_point_count(ColliderShape shape);
 /// `normal`; the other four are fixed. The points of all other shapes are fixed.
 ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal);
 
-/// True if k is the first point of a rim, whose position depends on the face.
+/// True if point k is the first point of a rim: its position depends on the normal of the face (collider_point).
 bool collider_point_follows(ColliderShape shape, Index k);
 
 /// Index of the flat region of a shape in which `point` can move furthest, or no_index if the shape has no flat region.
 /// A flat region is a volume at a flat or hollow side of the shape, in which the signed distance is a linear or concave
-/// function. If a segment or triangle lies in this volume, one of its corners is therefore nearest to the shape, so
-/// only nodes can touch. A plane has one region, a box one at each of its six faces, a cylinder one at each end, and a
+/// function. On a segment or triangle in this volume, the distance is therefore least at an end or corner, so only
+/// nodes can touch. A plane has one region, a box one at each of its six faces, a cylinder one at each end, and a
 /// bucket one inside and one below.
 Index flat_place(const ColliderGeometry& geometry, const Vec3& point);
 
@@ -58,8 +58,8 @@ struct HullTangent {
 /// itself, except for a bucket.
 HullTangent hull_tangent(const ColliderGeometry& geometry, const Vec3& at);
 
-/// Lower bound of the distance between the shape and the convex hull of `points` [m]. The bound is the least value of
-/// hull_tangent at the points, for `at` = mean of the points.
+/// Lower bound of the distance between the shape and the convex hull of `points` [m]. It is the least value of
+/// HullTangent::bound at the points, with the tangent taken at their mean.
 Real hull_distance(const ColliderGeometry& geometry, std::span<const Vec3> points);
 
 /// Corners of a triangle in the frame of the collider, counter-clockwise as seen from outside the body.

@@ -10,12 +10,12 @@ namespace skerry {
 
 namespace {
 
-// The derivative of the distance along the edge counts as zero if it is below this value. Over the length of an edge,
-// such a derivative changes the distance by 1 % of the default contact distance (0.02 edge lengths).
+// The derivative of the distance along the edge counts as zero if its magnitude is at most this value. Over the length
+// of an edge, such a derivative changes the distance by 1 % of the default contact distance (0.02 edge lengths).
 constexpr Real flat_slope = 2e-4;
 
-// Where the magnitude of the derivative of the distance along the edge exceeds this value, the edge is too far from the
-// collider to touch unless it rotates first. Such parts of the edge get no contact point.
+// Limit of the magnitude of the derivative of the distance along the edge. A part of the edge where the derivative is
+// larger is too far from the collider to touch unless the edge rotates first. It gets no contact point.
 constexpr Real steep_slope = 0.05;
 
 // Accuracy of the parameter of a minimum or of an end of a flat stretch (0 to 1 along the edge).
@@ -106,8 +106,8 @@ private:
 class PlaceOfSlope {
 public:
     /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a
-    /// derivative of exactly `slope` counts as below `slope`, so that the end of a stretch with this derivative is
-    /// found and not its start.
+    /// derivative of exactly `slope` counts as below `slope`. On a stretch where the derivative has this value, the end
+    /// is then found instead of the start.
     PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
         : along_(along),
           on_(on),
@@ -158,8 +158,8 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the contact points in an interval in which the derivative of the distance increases: the minimum or both ends
-/// of a flat stretch, and the points where the distance begins to rise (edge_contact.h).
+/// Finds the contact points in an interval in which the derivative of the distance increases: the minimum, or both ends
+/// of a flat stretch; also the points beyond which the distance rises steeply (edge_contact.h).
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -189,9 +189,8 @@ private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
     /// first_place: parameter from which on the derivative of the distance is at least -`slope`. last_place: parameter
-    /// up to which the derivative is at most `slope`. If the derivative jumps past the limit at a kink, the parameter
-    /// is on the side where the derivative is within the limit, because the normal of that side is valid along the flat
-    /// stretch.
+    /// up to which the derivative is at most `slope`. If the derivative jumps past the limit at a kink, the returned
+    /// parameter is on the side of the flat stretch, because the normal there is valid along the stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
@@ -212,8 +211,8 @@ private:
         }
     }
     /// add_before and add_behind add one more contact point, at least shortest_stretch before or behind the contact
-    /// point at `other`. They add none if the distance is steeper than steep_slope at all points that far away. One
-    /// evaluation at this least distance shows this, because the derivative increases along the edge.
+    /// point at `other`. They add none if the distance already is steeper than steep_slope at this least separation:
+    /// the derivative increases along the edge, so the distance is even steeper further away.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
@@ -249,7 +248,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
         // Lower bound of the distance in the interval. For a convex part it follows from the tangents at both ends. For
-        // other parts it is (d0 + d1 - length) / 2, because the distance changes by at most 1 per length.
+        // other parts it is (d0 + d1 - length) / 2 with the distances d0 and d1 at the ends, because the distance
+        // changes by at most the length of the way along the edge.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

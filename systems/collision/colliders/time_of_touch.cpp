@@ -16,7 +16,7 @@ namespace {
 
 using Nodes = std::array<Vec3, 3>;
 
-// Accuracy of the position along an edge at which the distance is least, as a fraction of the edge length.
+// Accuracy of the parameter (0 to 1 along an edge) at which the distance is least.
 constexpr Real least_place_tolerance = 1e-12;
 
 Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3>& weight) {
@@ -24,8 +24,9 @@ Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3
 }
 
 /// Nearest points of an edge and a convex collider part. The distance along the edge is a convex function, so it is
-/// least where its derivative changes sign; bisection finds this point. Its normal is accurate, because the gradient of
-/// the distance is continuous outside of the part, where touches are searched.
+/// least where its derivative changes sign; bisection finds this point. The normal at the point found is accurate,
+/// because the gradient of the distance is continuous outside of the part, and only positions outside of it are
+/// searched.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -63,7 +64,8 @@ public:
     }
 
     /// Lower bound of the distance between the wall and the stretch of the edge between the parameters `low` and `high`
-    /// [m]. It follows from the ranges of height and distance from the axis on the stretch.
+    /// [m]. It follows from the two intervals that contain the heights and the distances from the axis of all points of
+    /// the stretch.
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_most = std::max(r_low, r_high),
                    r_least = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -182,8 +184,8 @@ public:
     }
 
     /// Upper bound of the speeds of all nodes of the feature relative to the collider during the whole step [m per
-    /// step]. The first summand is the speed at the start; the second bounds its growth, because the arm grows by at
-    /// most drift().
+    /// step]. A node has the velocity drift - turn x arm. The first summand is its norm at the start; the second bounds
+    /// the growth of this norm, because the arm changes by at most drift during the step.
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)
@@ -228,10 +230,10 @@ private:
     const Vec3 turn_;   // rotation vector of the collider in the step [rad]
 };
 
-/// True if the tangent plane at the nearest point of the collider separates the feature from the whole tested collider
-/// part (for a face: from the collider point with its ball). The feature then cannot touch before one of its nodes
-/// passes this plane. False for the wall of a bucket, which is not convex, and for a face if one of its edges is
-/// nearest, because there is no normal then.
+/// True if the tangent plane at the nearest point of the collider separates the feature from the tested part of the
+/// collider (for a face: from the tested collider point and its ball). The feature then cannot touch before one of its
+/// nodes passes this plane. False for the wall of a bucket, which is not convex, and for a face if one of its edges is
+/// nearest, because Touch then has no normal.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
     return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;

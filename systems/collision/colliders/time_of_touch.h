@@ -48,8 +48,8 @@ Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& fea
 
 /// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, and the feature
 /// is not the core of a round body. No feature can move around a plane, so a feature that has crossed the plane is
-/// behind it at the end. For a core the test is not sufficient, because the surface of a round body may not pass the
-/// plane at any time of the step.
+/// behind it at the end. For a core the end of the step does not suffice, because the distance of the core from the
+/// plane must not fall below the radius at any time of the step.
 bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
 /// Upper bound of the decrease in distance between the collider and any point of the feature, while both move for h
@@ -58,8 +58,8 @@ Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature&
 
 /// Finds the first time in the step at which a feature and a collider are nearly in contact, and returns their nearest
 /// points at this time; no value if they do not meet. The method is conservative advancement, similar to
-/// time_of_contact. `time_of_touch` may be null. Otherwise it receives the time as a fraction of the step, but is left
-/// unchanged if the_end_tells is true.
+/// time_of_contact. `time_of_touch`: receives the time as a fraction of the step, but is left unchanged if
+/// the_end_tells is true; may be null.
 ///
 /// If the_end_tells is true, only the end of the step is tested, and the nearest points are returned if the feature is
 /// behind the plane then. No value is returned for a feature that touches or overlaps the collider at the start of the

@@ -25,8 +25,9 @@ constexpr Real lying_tilt = 0.5;
 // Angle by which a contact normal at an edge or rim may be outside of the range between the normals of the two adjacent
 // sides [rad]. Capsules have an equal tolerance (axis_tilt in point_triangle_contact.cpp).
 constexpr Real rim_angle = 0.03;
-// Tolerance for classifying the gradient of the distance from the cylinder. If the gradient differs from the axis by
-// less, it belongs to an end. If its component along the axis is smaller, it belongs to the curved side.
+// Tolerance of place_of(), which classifies the gradient of the distance from the cylinder. If the component
+// perpendicular to the axis is at most this value, the nearest part is an end; if the component along the axis is at
+// most this value, it is the curved side.
 constexpr Real place_rounding = 1e-9;
 // Tolerance at the border of a flat side, as a fraction of the size of the side. Points that rounding errors put beside
 // a side thus count as above the side.
@@ -38,9 +39,9 @@ constexpr int samples_around = 16;
 // Accuracy of the angle of a contact point on a rim, and distance below which two minima count as one [rad].
 constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;
 
-// Numbers of the contact points on a shape. Each rim has of_rim numbers, each side has of_side numbers. Points on the
-// rims of the cylinder are numbered from 0. The other constants are the first numbers of the other kinds of contact
-// points: on rims of the other shape, on sides, at corners, on edges, and between curved sides.
+// Numbers of the contact points on a shape: of_rim numbers for each rim, of_side numbers for each flat side. Points on
+// the rims of the cylinder come first, from 0. The other constants are the first numbers of points on rims of the other
+// shape, on its flat sides, at its corners, on its edges, and between curved sides.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
                 of_round_sides = 240;
 
@@ -51,14 +52,16 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
 /// A circle around the z axis: the edge between a curved side and a flat side of a shape.
 struct CylinderRim {
     Real radius, z;  // [m]
-    // Directions of the outward normals, 1 or -1: of the curved side along the radius, of the flat side along z.
+    // `outward`: direction of the outward normal of the curved side along the radius, 1 or -1. `along`: direction of
+    // the outward normal of the flat side along z, 1 or -1.
     Real outward, along;
     bool faces(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;
     }
 };
 
-/// Calls visit(k, direction, on) for minimum k of a distance along a rim. Minima are searched between samples. If the
+/// Calls visit(k, direction, on) for each minimum of a distance along a rim, numbered by k. `direction`: unit vector
+/// from the axis to the minimum. `on`: result of distance_at() there. Minima are searched between samples. If the
 /// distance is constant along an arc, both ends of the arc are visited.
 template <class Distance, class Visit>
 void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
@@ -104,7 +107,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
         const Real low = (i - 1) * between, high = i * between;
         // If the derivative is zero at a sample, the sample lies on an arc of constant distance or, by chance, at a
-        // minimum. The derivative a little beyond the sample tells which.
+        // minimum. The derivative at a point a little beyond the sample decides between the two.
         if (falls && after.slope >= -level_slope) {
             const Sample beyond = rises ? after : sample(high + same_place);
             if (beyond.slope > level_slope)
@@ -245,8 +248,8 @@ private:
     }
 
     /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. If this side is a
-    /// disc, adds also the points at which the rim that faces the side crosses the outer border of the disc, seen along
-    /// the normal.
+    /// disc, adds also the points at which the rim of the cylinder next to the side crosses the outer border of the
+    /// disc in the projection along the normal.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = place_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -257,8 +260,8 @@ private:
             if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
                 add(of_sides + of_side * number + k, height, normal, foot);
         };
-        // If neither end of the cylinder nearly faces the side, touch_rims() already finds the only possible contact
-        // points, the rim points that reach furthest.
+        // If the ends of the cylinder are tilted against the side by more than 30 degrees (lying_tilt), touch_rims()
+        // already finds the only possible contact point of each rim, the one that reaches furthest.
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
         for (const RimPoints::Point& p : RimPoints(own_, normal)) {
@@ -278,7 +281,8 @@ private:
             });
     }
 
-    /// Adds the rim points of the other shape, which is also a cylinder, that are above an end of the cylinder.
+    /// Called if the other shape is a cylinder, too: adds those of its rim points (RimPoints) that are above an end of
+    /// this cylinder.
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
         // Normal of the end in the frame of the other cylinder.
@@ -347,9 +351,9 @@ private:
             }
     }
 
-    /// Adds the contact point between the curved side of the cylinder and a curved side of the other shape, if the two
-    /// axes are nearest between their ends. `radius`: radius of the other side. `low`, `high`: ends of its axis. For
-    /// parallel axes, the rims make the contacts.
+    /// Adds the contact point between the curved side of the cylinder and a curved side of the other shape, if the
+    /// nearest points of the two axes lie between their ends. `radius`: radius of the other curved side. `low`, `high`:
+    /// z coordinates of the ends of its axis. For parallel axes, the rims make the contacts.
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =
@@ -357,7 +361,7 @@ private:
         const Real length = std::sqrt(nearest.distance_squared);
         if (!nearest.interior || !(length > 0)) return;
         const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
-        // The axis of the cylinder passes inside the bucket, so the cylinder cannot touch its outer side.
+        // Inside the bucket the cylinder cannot touch the outer side. `length` is then below `radius`.
         if (other_.shape == ColliderShape::bucket && length < radius) return;
         add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
     }

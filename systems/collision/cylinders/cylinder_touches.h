@@ -41,13 +41,14 @@ private:
 /// Points on the rims of a cylinder that can touch a flat side of another shape. `normal`: outward unit normal of the
 /// side in the frame of the cylinder.
 ///
-/// The list contains the point of each rim that is nearest to the side. If the ends are tilted against the side by at
-/// most 30 degrees, it also contains the points of each rim at 90, 180 and 270 degrees from the nearest one. If the
-/// tilt is at most 1e-4 rad, it contains eight points of each rim at fixed angles instead of these three.
+/// The list contains, for each of the two rims, the point that is nearest to the side. If the ends are tilted against
+/// the side by at most 30 degrees, it also contains the points of each rim at 90, 180 and 270 degrees from the nearest
+/// one. If the tilt is at most 1e-4 rad, it contains eight points of each rim at fixed angles instead of these three.
 ///
-/// A contact assumes that its point moves on a straight path within a step. While a tilted cylinder rotates about its
-/// axis by less than a radian, the straight paths of these points come no nearer to the side than the nearest point.
-/// Points at other angles could come nearer on such a path, and would cause false contacts.
+/// A contact assumes that its point moves on a straight path within a step. If a tilted cylinder rotates about its axis
+/// by less than a radian in the step, the straight paths of these four points come no nearer to the side than the
+/// nearest of them is at the start. Points at other angles could come nearer on such a path, and would cause false
+/// contacts.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
@@ -86,10 +87,10 @@ void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
 /// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]. It is the
-/// greatest of several bounds: the distance from the bounding sphere of the cylinder, for two cylinders the distance of
-/// the capsules around them, and the distances between parallel planes that enclose the two shapes. The normals of the
-/// planes are the axes of both shapes and the normals of `touches`. `place`: pose of the other shape in the frame of
-/// the cylinder.
+/// greatest of several bounds: the distance of the other shape from the bounding sphere of the cylinder; for two
+/// cylinders, the distance between the capsules around them; the distances between parallel support planes of the two
+/// shapes. The normals of these planes are the axes of both shapes and the normals of `touches`. `place`: pose of the
+/// other shape in the frame of the cylinder.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                           const RigidMotion& place, const CylinderTouches& touches);
 

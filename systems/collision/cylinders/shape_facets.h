@@ -77,7 +77,8 @@ private:
         for (int k = 0; k < 8; ++k)
             for (int bit = 1; bit < 8; bit *= 2)
                 if (!(k & bit)) visit(Facet{Kind::edge, {corner(k), corner(k | bit)}});
-        for (int bit = 1; bit < 8; bit *= 2) {  // one bit per axis; b and c: the other two axes, in cyclic order
+        // one bit per axis; b and c: bits of the other two axes, in cyclic order
+        for (int bit = 1; bit < 8; bit *= 2) {
             const int b = bit == 4 ? 1 : 2 * bit, c = b == 4 ? 1 : 2 * b;
             quad(corner(bit), corner(bit | b), corner(bit | b | c), corner(bit | c), visit);
             quad(corner(0), corner(c), corner(b | c), corner(b), visit);

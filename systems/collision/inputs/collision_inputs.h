@@ -22,9 +22,9 @@ struct PairOwners {
     std::span<const std::int32_t> body_owner{};  // by row of BodyTable: owner; empty: this rank has all pairs
     std::int32_t rank = 0;                       // number of this rank
 
-    /// True if a pair of two bodies that can move belongs to the rank of the second body. It is the body with the
-    /// higher slot if the sum of the slots is odd, else the one with the lower slot. The result is thus independent of
-    /// the order of the bodies, and each of two ranks gets about half of the pairs between them.
+    /// True if a pair of two bodies that can move belongs to the rank of the second body. The rank of the body with the
+    /// higher slot gets the pair if the sum of the slots is odd, else the rank of the other body. The owner is thus
+    /// independent of the order of the bodies, and each of two ranks gets about half of the pairs of their bodies.
     static constexpr bool belongs_to_second(std::uint32_t first_slot, std::uint32_t second_slot) {
         return (first_slot + second_slot) % 2 == (first_slot < second_slot);
     }
@@ -89,7 +89,8 @@ struct CollisionInputs {
 };
 
 struct CollisionSettings {
-    // Magnitude of the gravitational acceleration, which bounds the increase of speeds in a step [m/s^2].
+    // Magnitude of the gravitational acceleration [m/s^2]. Bounds of speeds assume that it accelerates each body during
+    // the step.
     Real gravity = 0;
     // Least margin m of the candidate lists, as a fraction of the mean edge length. Features are listed as candidates
     // if their distance is below zone + m (contact_reach.h).

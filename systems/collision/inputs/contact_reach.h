@@ -38,17 +38,17 @@
 
 namespace skerry {
 
-// Safety factor on speeds, because forces can increase the speeds during the step. If they increase them by more, the
-// contact is found one step later, when the distance may already be below the contact distance. Even larger motions are
-// detected by find_crossings.
+// Safety factor on speeds, because forces can increase the speeds during the step. If the increase exceeds the factor,
+// the contact is found one step later, when the distance may already be below the contact distance. Motions that would
+// make surfaces cross are detected by find_crossings.
 inline constexpr Real speed_safety = 2.0;
 
 // Features are not tested for a crossing in the step if the bound of their approach is below this fraction of their
 // distance. The fraction 1 would suffice without rounding errors.
 inline constexpr Real slow_fraction = 0.5;
 
-// A gap below this fraction of the contact distance counts as closed. The contacts of a resting pile therefore persist
-// while the pile vibrates.
+// Two features with a gap below this fraction of the contact distance get a contact even if they do not approach. The
+// contacts of a resting pile therefore persist while the pile vibrates.
 inline constexpr Real touching_fraction = 0.1;
 
 /// Largest gap that can close within a step of length h [m]. Gravity can change the speed of each partner by gravity *
@@ -104,13 +104,13 @@ inline bool is_held_apart(const CollisionSettings& settings, PairState state, co
 }
 
 /// Characteristic distances of a pair whose state is known. If the surfaces cannot have passed through each other, no
-/// point lies deep behind a face, so `zone` need not contain face_depth and is reduced to edge_depth.
+/// point has to be pushed out from behind a face, so `zone` need not contain face_depth and is reduced to edge_depth.
 inline PairScale pair_scale_as_known(const CollisionSettings& settings, PairState state, PairScale scale) {
     if (is_held_apart(settings, state, scale)) scale.zone = scale.edge_depth;
     return scale;
 }
 
-/// Returns `properties` with each property replaced by the one in `given` if that is not negative.
+/// Returns the properties in `given`, with each negative one replaced by that of `properties`.
 SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given);
 
 /// Surface of one partner of a contact. `material`: row of MaterialTable, or no_index for a collider without a

@@ -10,7 +10,8 @@ namespace {
 
 using NodeLanes = std::array<Index, candidate_lanes>;
 
-/// Positions of the nodes in part `part` of the eight lanes [m]. One vector register holds lanes_of<KernelReal> lanes.
+/// Positions of the nodes of one register-wide slice of the eight lanes [m]: lanes_of<KernelReal> lanes from lane part
+/// * lanes_of<KernelReal> on.
 [[gnu::always_inline]] inline LaneVec3<KernelReal> gather(std::span<const Vec3> position, const NodeLanes& node,
                                                           std::size_t part) {
     const auto axis = [&]<std::size_t... l>(Index i, std::index_sequence<l...>) __attribute__((always_inline)) {

@@ -13,8 +13,8 @@ struct SurfacePoint {
 };
 
 /// Signed distance of a world point from a plane, sphere, box, capsule, cylinder or bucket. The distance is exact
-/// outside and inside the shape; inside a box or cylinder the nearest face determines it. Where the nearest point is
-/// not unique (medial axis), a fixed rule selects one.
+/// outside and inside the shape: inside, it is the distance from the nearest point of the surface, with negative sign.
+/// Where the nearest point is not unique (medial axis), a fixed rule selects one.
 SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point);
 
 /// Number of parts of a collider. A bucket has two parts, floor and wall, so that a point in the corner between them

@@ -10,20 +10,20 @@ namespace skerry {
 namespace {
 
 // An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Flat edges get no
-// contacts, so two of them can come nearer to each other than the contact distance that the nodes around them keep. The
-// difference is at most min_bend / 4 times the width of the faces: an eighth of the default contact distance (0.02 edge
+// contacts: only the nodes around them keep the contact distance, and two flat edges can come nearer to each other. The
+// difference is at most min_bend / 4 times the width of the faces, an eighth of the default contact distance (0.02 edge
 // lengths).
 constexpr Real min_bend = 0.01;
 
 // Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad]
-// (docs/methods/collision.md 4.4). A second tolerance, `closing`, allows for rotations in this step: without it, two
-// edges could cross in a step in which a contact stops a point in front of them.
+// (docs/methods/collision.md 4.4). A second tolerance, `closing`, allows for rotations in this step. Without `closing`,
+// two edges could cross in a step in which a contact stops a point in front of them.
 //
-// The tolerance is needed for an edge that rests on a face F of another body. It touches two edges of F, and the
-// contact normal is exactly that of F, which is the limit of the range. If the faces at one of these two edges form a
-// smaller angle, the slack lets the resting edge sink further there. The contact normal at the other one is then
-// outside of the range, by about 0.01 rad for edges of equal length. Without the tolerance the contact there would be
-// lost: the resting edge would fall onto F, regain the contact and be pushed out, again and again.
+// The tolerance is needed for an edge that rests on a face F of another body. It crosses two edges A and B of F, and
+// both contact normals are exactly that of F, which is the limit of the range. If the bend of A is smaller than that of
+// B, the slack lets the resting edge sink further at A. The contact normal at B is then outside of the range, by about
+// 0.01 rad for edges of equal length. Without the tolerance the contact at B would be lost: the resting edge would fall
+// onto F, regain the contact and be pushed out, again and again.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -68,8 +68,8 @@ public:
         into_[1] = across(along, position[opposite(second, ends)] - origin);
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
-        // `fall`: depth of the second face below the plane of the first face, at the corner of the second face opposite
-        // to the edge.
+        // `fall`: depth, below the plane of the first face, of the corner of the second face that is opposite to the
+        // edge [m].
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
         if (against_axis) {  // the axis of a capsule may also rest on flat and slightly concave edges
             convex_ = fall > -min_bend * other_width - closing;

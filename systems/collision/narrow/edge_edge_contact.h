@@ -17,15 +17,15 @@ struct EdgeEdgeContact {
     Real slack = 0;
     Vec3 normal;  // unit normal in the direction in which contacts push the first edge; valid if `touching`
     SegmentSegment closest;
-    Real sleep = 0;  // travel of the pair up to which the edges cannot touch, counted from now [m]
+    Real sleep = 0;  // travel of the pair, counted from now, up to which the edges cannot touch [m]
 };
 
-/// Tests two edges for a contact between their interior points. An edge can only touch if its surface is convex there,
-/// and if the contact normal lies between the normals of its two faces. Otherwise a point and a face are nearer. Nearly
-/// flat edges are not tested, because tests of the points of the surface suffice. The axis of a capsule can touch in
-/// all directions, and it can touch nearly flat edges. If the distance exceeds both `near` and scale.edge_depth, only
-/// `closest` and `sleep` are computed. If the surfaces may overlap, contacts of edges that have passed each other are
-/// found, too.
+/// Tests two edges for a contact between their interior points. An edge can only touch if the surface is convex at the
+/// edge, and if the contact normal lies between the normals of the two faces of the edge. Otherwise a point and a face
+/// are nearer. Nearly flat edges get no contact, because contacts at the surface's vertices suffice. The axis of a
+/// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both `near` and
+/// scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, contacts of edges that have
+/// passed each other are found, too.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real near, Surfaces surfaces);
 

@@ -47,9 +47,9 @@ struct Query {
     }
 };
 
-/// Sum of the unit normals of the two faces at edge k of a triangle, on which the nearest point lies; `face_normal`,
-/// the normal of the triangle, if it has no neighbour at the edge. Zero if the neighbour is nearer to the point than
-/// the edge.
+/// Sum of the unit normals of the two faces at edge k of a triangle. The point of the triangle nearest to the queried
+/// point lies on this edge. `face_normal`: normal of the triangle; it is the result if the edge has only this face. The
+/// result is zero if the other face is nearer to the queried point than the edge.
 Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face_normal) {
     const Index edge = q.surface.triangles.edge[triangle][k];
     const auto& around = q.surface.edges.triangle[edge];
@@ -66,8 +66,8 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
 
 /// Sum of the unit normals of the faces around a vertex, weighted by the angles of the faces at the vertex. Its scalar
 /// product with the vector to a point is positive outside and negative inside (Baerentzen, Aanaes 2005). allowed(side)
-/// is called for each side of these faces at the vertex, as a vector from the vertex; the result is zero if it is false
-/// for any of them.
+/// is called for each edge of these faces at the vertex; `side`: vector along the edge, from the vertex. If any call
+/// returns false, the result is zero.
 Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     const VertexTable& vertices = q.surface.vertices;
     const Index self = vertices.node[vertex];
@@ -85,8 +85,9 @@ Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     return sum;
 }
 
-/// Sets the contact with an edge or vertex. `mean_normal`: sum of the normals of the adjacent faces; zero: no contact.
-/// `straight_behind`: true if q.offset is perpendicular to the triangle.
+/// Sets `contact` for the case that an edge or vertex is nearest to the queried point. `mean_normal`: sum of the
+/// normals of the adjacent faces; zero: no contact. `straight_behind`: true if q.offset is perpendicular to the
+/// triangle.
 void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, Surfaces surfaces,
                   PointTriangleContact& contact) {
     const Real length = mean_normal.norm();

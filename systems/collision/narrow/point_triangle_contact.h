@@ -42,13 +42,13 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
                                             Surfaces surfaces);
 
 /// True if a vertex of a surface can touch a capsule or the curved side of a cylinder. Let p be the point of the axis
-/// that is nearest to the vertex: no face at the vertex may be nearer to p, after a tilt of the axis by at most
-/// axis_tilt. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
+/// that is nearest to the vertex. There must be a tilt of the axis by at most axis_tilt after which no face at the
+/// vertex is nearer to p than the vertex. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale);
 
-/// True if a vertex of a surface can touch a point, because no face at the vertex is nearer to this point. `offset`:
-/// vector from the vertex to the point [m].
+/// True if a vertex of a surface can touch a point, because no face at the vertex is nearer to this point than the
+/// vertex. `offset`: vector from the vertex to the point [m].
 bool vertex_holds_place(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                         const PairScale& scale);
 

@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// Half of the solid angle of a triangle as seen from the origin, negative if the corners are counter-clockwise as seen
-/// from there (Van Oosterom, Strackee 1983, The solid angle of a plane triangle).
+/// Half of the solid angle of a triangle as seen from the origin; negative if the corners then appear counter-clockwise
+/// (Van Oosterom, Strackee 1983, The solid angle of a plane triangle).
 Real half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 in regions where the body overlaps

@@ -50,8 +50,9 @@ void finish(Solid& solid) {
 }
 
 /// Side of the line from a to b on which a point lies, in the projection on the plane with x to the right and y up: 1
-/// is left, -1 is right. A point exactly on the line is shifted by an infinitesimal vector (e, e^2), so that it lies on
-/// one side of the line, and on the opposite side of the line from b to a.
+/// is left, -1 is right. A point exactly on the line counts as shifted by an infinitesimal vector (e, e^2). It then
+/// lies on one side of the line from a to b, and on the other side of the line from b to a, so a ray through an edge
+/// hits exactly one of the two triangles.
 int side_of(const Vec3& point, const Vec3& a, const Vec3& b) {
     const Real x = b.x() - a.x(), y = b.y() - a.y();
     const Real area = x * (point.y() - a.y()) - y * (point.x() - a.x());

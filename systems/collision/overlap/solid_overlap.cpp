@@ -63,8 +63,8 @@ std::vector<Meeting> find_meetings(const PlacedSolid& first, const PlacedSolid& 
     return found;
 }
 
-/// Returns one distance for each direction: the distance by which the first solid has to move to leave all simplices of
-/// the second solid that it overlaps now [m].
+/// Returns for each direction the distance by which the first solid has to move along it to leave all simplices of the
+/// second solid that it overlaps now [m].
 std::vector<Real> ways_out(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                            std::span<const Vec3> direction) {
     std::vector<Real> way(direction.size(), 0);
@@ -168,8 +168,8 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
                     std::span<const Meeting> meetings) {
     const Directions directions = likely_directions(first, second, meetings);
     const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
-    // A distance must be smaller by more than rounding errors to replace an earlier one, so that the first of equal
-    // distances is used.
+    // A cost must be smaller by more than rounding errors to replace an earlier one, so that the first of equal costs
+    // is used on every machine.
     constexpr Real shorter = 1 - 1e-6;
     Vec3 best = Vec3::UnitZ();
     Real least = infinity;
@@ -197,8 +197,8 @@ Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tol
 }
 
 /// Finds the separating motion if one of the solids contains the other. The motion takes all points of the first solid
-/// past all points of the second, in the direction between the centres or along a coordinate axis, whichever is
-/// shortest.
+/// past all points of the second, along the line between the centres or along a coordinate axis; the shortest of these
+/// motions is used.
 void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));

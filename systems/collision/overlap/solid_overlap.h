@@ -31,8 +31,9 @@ struct PlacedSolid {
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
 /// Finds a surface point of `solid` at a distance of at most `tolerance` [m] from the open `surface`, if the solid is
-/// behind the surface: its outward normal there and the normal of the triangle form an acute angle. Contacts cannot
-/// detect the side at so small a distance. The returned overlap moves the solid further back by twice the tolerance.
+/// behind the surface, so that the outward normal of the solid at the point and the normal of the triangle form an
+/// acute angle. Contacts cannot detect the side at so small a distance. The returned overlap moves the solid further
+/// back by twice the tolerance.
 std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
 
 }  // namespace skerry

@@ -22,8 +22,8 @@ public:
             return squared <= outer * outer && squared >= inner * inner;
         });
     }
-    /// Intersects the ray with the plane in which the coordinate `axis` has the value `at`. A hit counts only if
-    /// belongs(point) is true. `side`: sign of the outward normal.
+    /// Intersects the ray with the plane in which the coordinate `axis` has the value `at`. A hit at `point` counts
+    /// only if belongs(point) is true. `side`: component of the outward normal along the axis, 1 or -1.
     void flat(int axis, Real at, Real side, auto&& belongs) {
         if (ray_.direction[axis] == 0) return;
         const Real t = (at - ray_.origin[axis]) / ray_.direction[axis];
@@ -55,8 +55,8 @@ private:
         if (!(t >= 0 && t <= limit_) || (nearest_ && !(t < nearest_->distance))) return;
         nearest_ = {t, normal};
     }
-    /// Calls found(t) for each t with |origin + t direction| = radius. Distances along the ray are measured from the
-    /// point of the ray nearest to the centre, so rays that start far away lose no accuracy to cancellation.
+    /// Calls found(t) for each t with |origin + t direction| = radius. The solutions are computed relative to the point
+    /// of the ray nearest to the centre, so rays that start far away lose no accuracy to cancellation.
     static void roots(const Vec3& origin, const Vec3& direction, Real radius, auto&& found) {
         const Real squared = direction.squaredNorm();
         if (squared == 0) return;

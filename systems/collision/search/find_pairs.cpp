@@ -202,8 +202,8 @@ private:
         found.push_back({key, kind, first, second, -infinity, PairState::unknown, apart, 0});
     }
 
-    /// Sorts the found pairs by key. Kind and slot of the first body are the leading bits of the key: pairs are first
-    /// grouped by these two, then each group is sorted.
+    /// Sorts the found pairs by key. The leading bits of the key are a flag for colliders and the slot of the first
+    /// body. Pairs are first grouped by these bits, then each group is sorted.
     void sort_pairs() {
         const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
         const auto group_of = [&](const FoundPair& pair) {
@@ -245,8 +245,8 @@ bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
     return memory.body_forgotten[pair.first] || of_second[pair.second];
 }
 
-/// For each found pair that PairTable already contains: copies its values from there, and stores its row in
-/// memory.old_row. Pairs of an object that is forgotten (added or moved by the user) count as new.
+/// For each found pair that PairTable already contains: copies its values from PairTable, and stores its row of
+/// PairTable in memory.old_row. Pairs of an object that is forgotten (added or moved by the user) count as new.
 void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
     memory.old_row.assign(memory.pairs.size(), no_index);
     parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -264,8 +264,8 @@ void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pai
     });
 }
 
-/// Moves the candidate lists of pairs that existed before to their new rows. New pairs reuse the memory of removed
-/// pairs.
+/// Moves the candidate lists of pairs that PairTable already contained to their new rows. New pairs reuse the memory of
+/// the lists of removed pairs.
 void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     const std::size_t count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
@@ -333,8 +333,8 @@ void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs
     });
 }
 
-/// Replaces the rows of PairTable by memory.pairs. Pairs that existed before keep their candidate lists, unless one of
-/// the partners is forgotten (added or moved by the user).
+/// Replaces the rows of PairTable by memory.pairs. A pair that PairTable already contained keeps its candidate list,
+/// unless a partner is forgotten (added or moved by the user).
 void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     recall_pairs(executor, memory, pairs);
     move_lists(executor, memory, pairs);
@@ -360,8 +360,8 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
-    // Travel that colliders and kinematic bodies may make before the next broad search: that of a deformable body with
-    // the average mean edge.
+    // Travel that colliders and kinematic bodies may make before the next broad search. It is the travel that a
+    // deformable body may make whose mean edge is the average over all deformable bodies.
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);

@@ -15,7 +15,7 @@ namespace skerry {
 /// Coordinates of eight points: vectors of the x, y and z coordinates [m].
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 
-/// Writes for each lane l the bounding box of the points in lane l of points[0] to points[Count - 1].
+/// Writes to lane l of `box` the bounding box of the points in lane l of points[0] to points[Count - 1].
 template <std::size_t Count>
 void find_bounds(const std::array<PointLanes, Count>& points, LeafBoxes& box) {
     for (std::size_t i = 0; i < 3; ++i)

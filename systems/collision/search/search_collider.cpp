@@ -67,9 +67,9 @@ private:
         const bool has_edges = inputs_.body.edges[pair_.first].size() > 0;
         if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinity;
         const Vec3 middle = local(nearest_node_);
-        // Two lower bounds for the complete body; the larger one is used. `hull`: least value, over all nodes, of the
-        // hull_tangent at the node nearest to the collider. `flat`: distance that all nodes can move while they stay in
-        // one flat region of the collider, where only nodes can touch.
+        // Two lower bounds for the complete body; the larger one is used. `hull`: hull_tangent(), taken at the node
+        // nearest to the collider, bounds the distance of every node; least of these bounds. `flat`: distance that all
+        // nodes can move while they stay in one flat region of the collider, where only nodes can touch.
         Real hull = infinity, flat = infinity;
         const Index place = flat_place(geometry_, middle);
         const HullTangent tangent = hull_tangent(geometry_, middle);

@@ -19,14 +19,14 @@ namespace skerry {
 
 namespace {
 
-// Numbers of leaves whose data is cached. Two bodies that lie on each other touch with about ten leaves. A body that is
-// paired with itself has many pairs of leaves, and the second leaf changes with each pair. The caches of 128 leaves fit
-// into the second-level cache of a processor.
+// Numbers of leaves whose data is cached. `kept_leaves`: two bodies that lie on each other touch with about ten leaves.
+// `kept_leaves_of_self`: a body that is paired with itself has many pairs of leaves, and the second leaf changes with
+// each pair; the data of 128 leaves fit into the second-level cache of a processor.
 constexpr std::size_t kept_leaves = 16, kept_leaves_of_self = 128;
 template <class Features, std::size_t Count>
 using KeptLeaves = std::array<Features, Count>;
 
-/// Cached features of the leaves of one tree. The row of a leaf determines its position in the cache.
+/// Cached features of the leaves of one tree. Leaf row r is cached at index r % Count.
 template <std::size_t Count>
 struct KeptFeatures {
     KeptLeaves<LeafPoints, Count> points;
@@ -72,7 +72,7 @@ public:
 
 private:
     /// Two leaves (rows of BvhTable) whose features are to be compared. Features are listed if their distance is below
-    /// the zone plus `margin` [m].
+    /// the zone (PairScale) plus `margin` [m].
     struct NearLeaves {
         Index first, second;
         Real margin;
@@ -171,7 +171,8 @@ private:
         return features;
     }
 
-    /// Sets the bits of the edges that are close to a box. Returns true if there is any such edge.
+    /// Sets `near`: for each group of eight edges, the bits of the edges close to a box. Returns true if any edge is
+    /// close.
     bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
         unsigned any = 0;
         for (std::size_t group = 0; group < edges.groups(); ++group)
@@ -246,8 +247,9 @@ private:
         if (++queue.count == candidate_lanes) empty_queue(kind);
     }
 
-    /// Adds the candidates in the queue whose features are close, unless these features touched in the rest shape of
-    /// one body. A candidate needs no test until the distance of its features may be below the zone (PairScale).
+    /// Adds the close candidates of the queue to found_, except features of one body whose distance in the rest shape
+    /// is below the contact distance. Each candidate needs no test while its features are farther apart than the zone
+    /// (PairScale).
     void empty_queue(FeaturePair kind) {
         Queue& queue = queue_[static_cast<std::size_t>(kind)];
         if (queue.count == 0) return;
@@ -292,8 +294,7 @@ private:
     const PairToSearch& pair_;
     std::span<const Aabb> box_;
     Column<FoundCandidate>& found_;
-    // Squared distance below which features are listed: for a point and a triangle, and for two edges, where it is not
-    // larger [m^2].
+    // Squared distances below which features are listed: a point and a triangle; two edges (never larger) [m^2].
     Real radius_squared_, edge_radius_squared_;
     Real margin_;  // margin of the list for the present pair of leaves [m]
     // True for a sphere or a cylinder, whose core is a point in this search.

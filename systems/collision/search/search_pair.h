@@ -22,25 +22,25 @@ struct PairToSearch {
 /// Lists the close features of a pair in feature order, each combination of two features once. For two bodies, these
 /// are points of either body with triangles of the other body, and edges with edges. They are found with two trees,
 /// whose boxes must be computed from the present positions. A body and a collider are searched by search_collider. If a
-/// body is paired with itself, features are left out that share a node or whose distance in the rest shape is below the
-/// contact distance, and only the features of leaf_pairs are compared. Returns the travel_bound up to which the list is
-/// complete [m].
+/// body is paired with itself, only the features of leaf_pairs are compared; features that share a node, or whose
+/// distance in the rest shape is below the contact distance, are left out. Returns the travel of the pair up to which
+/// the list is complete (PairTable::travel_bound) [m].
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 
 /// Lists the nodes and edges of a body that are close to a part of a collider, and the faces that are close to a point
-/// of the collider. The list is in feature order. Edges and faces are listed only if they may touch between their
-/// nodes. Returns the travel_bound up to which the list is complete [m].
+/// of the collider. The list is in feature order. Edges and faces are listed only if their interior may touch. Returns
+/// the travel of the pair up to which the list is complete (PairTable::travel_bound) [m].
 Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found);
 
 /// True if an edge of one surface passes through a triangle of the other surface. The boxes of both trees must be
 /// computed from the present positions. Surfaces that only touch do not cross. If a body is paired with itself,
-/// features that are close to each other in the rest shape do not count.
+/// features whose distance in the rest shape is at most half of the mean edge do not count.
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box);
 
-/// Counts the pairs of an edge and a triangle of one body whose edge passes through the triangle. Features that are
-/// close to each other in the rest shape do not count. The boxes of the tree must be computed from the present
-/// positions.
+/// Counts the pairs of an edge and a triangle of one body whose edge passes through the triangle. Features whose
+/// distance in the rest shape is at most the mean edge do not count. The boxes of the tree must be computed from the
+/// present positions.
 Index count_self_crossings(const CollisionInputs& inputs, Index body, std::span<const Aabb> box);
 
 }  // namespace skerry

@@ -84,9 +84,9 @@ constexpr auto leaves_before = [](const LeafPair& a, const LeafPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
 };
 
-/// Lists the pairs of leaves that are close to each other. The spare distance of a pair follows from its boxes; a pair
-/// that was listed before keeps its spare distance if that is larger. Tree nodes are in depth-first order, so a forward
-/// search from each leaf finds the pairs sorted by first and second leaf.
+/// Lists the pairs of leaves that are close to each other. The spare distance M of a pair (self_motion.h) follows from
+/// its boxes; a pair that was listed before keeps its previous spare distance if that is larger. Tree nodes are in
+/// depth-first order, so a forward search from each leaf finds the pairs sorted by first and second leaf.
 void list_close(const SelfMotion& motion, std::span<const Aabb> box, const SelfSearch& self, LeafPairTable& pairs) {
     const Index root = motion.root(), end = motion.inputs.body.bvh_nodes[motion.body].end;
     const Real margin = std::max(listed_edges * motion.scale.edge, motion.margin_of(self, root, root)),

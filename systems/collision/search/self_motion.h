@@ -74,7 +74,8 @@ struct SelfMotion {
     }
 };
 
-/// `state`: state of the pair of the body with itself. `longer_motion`: distance by which the skin is increased [m].
+/// Motion of `body` relative to itself in a step of length `h` [s]. `state`: state of the pair of the body with itself.
+/// `longer_motion`: distance by which the skin is increased [m].
 inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionSettings& settings, PairState state,
                                  Index body, Real h, Real longer_motion = 0) {
     const PairScale scale = pair_scale(inputs, PairKind::self, body, body);

@@ -98,7 +98,7 @@ private:
 }  // namespace
 
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box) {
-    const Real own_piece = 2 * pair.scale.face_depth;  // as in rest_distance.h
+    const Real own_piece = 2 * pair.scale.face_depth;  // the limit of was_far_at_rest()
     return CrossingSearch(inputs, pair.kind, pair.first, pair.second, own_piece, box).any([](Index, std::size_t) {
         return true;
     });

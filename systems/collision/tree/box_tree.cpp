@@ -10,8 +10,8 @@ namespace skerry {
 BoxTree::BoxTree(std::span<const Aabb> boxes) {
     std::vector<Index> items(boxes.size());
     std::iota(items.begin(), items.end(), 0);
-    // Boxes that are not finite are left out, because they have no centre by which they could be sorted. They overlap
-    // nothing.
+    // Boxes that are not finite are left out, because they have no centre by which they could be sorted. Searches never
+    // find them.
     std::erase_if(items, [&](Index i) {
         const Aabb& box = boxes[static_cast<std::size_t>(i)];
         return !box.lower.allFinite() || !box.upper.allFinite();

@@ -23,8 +23,8 @@ struct Build {
     }
 
     /// Splits the triangles order[first .. end - 1] near the median of their centres, along the axis on which the
-    /// centres are spread widest. The left half is a multiple of the leaf size, so that at most one leaf is not full.
-    /// The depth of the tree is logarithmic for all shapes.
+    /// centres are spread widest. The size of the left half is a multiple of the leaf size, so that at most one leaf is
+    /// not full. The depth of the tree is logarithmic for all shapes.
     void append(Index first, Index end) {
         const Index row = static_cast<Index>(bvh.node.size());
         bvh.node.push_back({row + 1, no_index, no_index, 0});

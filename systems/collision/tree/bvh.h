@@ -30,8 +30,8 @@ void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhL
 BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
                            BvhTable& bvh, BvhLeafTable& leaves);
 
-/// Computes the boxes of one tree from `position`, from the leaves upwards. self_motion.cpp passes other vectors of the
-/// nodes instead, for example velocities.
+/// Computes the boxes of one tree from `position`, from the leaves upwards. `position` may also hold other vectors by
+/// node, for example velocities (self_motion.cpp).
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
                std::span<const Vec3> position, std::span<Aabb> box);
 

@@ -30,7 +30,8 @@ struct StepVerdict {
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, if one node causes the fault
     // Size of the fault. For too_fast: norm of the change of F in this step, over the leeway (factor on
-    // max_strain_step). For too_far: spacing of floating-point coordinates over the mean edge. Not used for not_finite.
+    // max_strain_step). For too_far: spacing of floating-point coordinates over the mean edge. For too_stiff: longest
+    // stable step [s]. Not used for not_finite and unsolved.
     Real value = 0;
     Index tetrahedron = no_index;  // tetrahedron that causes the fault, if there is one: lane t % 8 of block t / 8
     StrainRate fastest = {};       // fastest element; not set if the fault is not_finite
@@ -135,8 +136,8 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
 StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
 /// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. In a step, which
-/// lasts about as long as sound takes to cross an edge, motion below a millionth of the speed of sound would be lost to
-/// rounding with a coarser spacing.
+/// lasts about as long as sound takes to cross an edge, motion slower than a millionth of the speed of sound would be
+/// lost to rounding if the spacing were coarser.
 inline constexpr Real coarsest_place = 1e-6;
 
 /// Finds the first body that is too far from the origin for its size. One node per body is tested, because the size of

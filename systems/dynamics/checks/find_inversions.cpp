@@ -75,7 +75,8 @@ struct Body {
           travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
 
     void check(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> checks_left) const {
-        // All blocks are prefetched before the first is checked, because they have left the cache since the last step.
+        // All blocks to be checked are prefetched before the first check, because they have left the cache since the
+        // last step.
         std::array<std::size_t, blocks_per_part> due;
         std::size_t due_count = 0;
         SKERRY_CHECK(static_cast<std::size_t>(part.blocks.size()) <= due.size());
@@ -163,7 +164,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);
-    Index open = blocks_per_part;  // number of blocks in the last job; the first part thus begins a job
+    Index open = blocks_per_part;  // number of blocks in the last job; begins full, so that the first part begins a job
     for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
         const Range blocks = inputs.body_blocks[b];
         if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;

@@ -66,7 +66,7 @@ struct WorkInputs {
 /// previous step and half of this step. `lag`: half of the previous step [s]. With leapfrog `lag` is 0, and a free node
 /// moves by h (velocity + velocity_next) / 2 while the forces act. The part of a holding force that balances weight and
 /// loads does work over the step length `h` [s], the part that balances element forces over `kick`. For an implicit
-/// body both parts act over `kick`, because strain_implicit_bodies has scaled its `force` so.
+/// body both parts act over `kick`, because strain_implicit_bodies has scaled its `force` to this time.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

@@ -27,7 +27,7 @@ bool are_in_one(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, s
     return root != no_index;
 }
 
-/// Volume of a tetrahedron from the gradients of its shape functions [m^3]; 0 in an unused lane.
+/// Volume V of a tetrahedron [m^3]; 0 in an unused lane. The determinant of three of its shape gradients is 1/(6 V).
 Real volume_of(const BlockNodes& nodes, std::size_t l) {
     Mat3 gradients;
     for (Index k = 1; k < 4; ++k)

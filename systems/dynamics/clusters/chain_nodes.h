@@ -69,8 +69,8 @@ struct NodeChains {
         });
     }
 
-    /// Root of the set that contains a node (row of NodeTable minus `first`); no_index if no implicit element except
-    /// guards acts on the node.
+    /// Root of the set that contains `node` (row of NodeTable); no_index if no implicit element except guards acts on
+    /// `node`. The root is a row of NodeTable minus `first`.
     Index root_of(Index node) {
         const Index row = node - first;
         if (row < 0 || row >= static_cast<Index>(chained.size()) || chained[static_cast<std::size_t>(row)] == 0)

@@ -20,14 +20,13 @@ struct ImplicitOutputs {
 
 struct ImplicitGoal {
     Real step;  // step at which the implicit elements are to be stable [s]
-    // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms,
-    // which are computed later, will allow longer steps.
+    // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms
+    // (ElementBlockTable::mass_form), which are computed later, will allow longer steps.
     Real stable;
     Real headroom;     // assumed divided by present stiffness of an implicit element, which may stiffen later
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
-    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. Only with a limit
-    // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]) is needed, because clusters contain only moving
-    // nodes.
+    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. A limit requires
+    // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]), because clusters contain only moving nodes.
     std::size_t most_nodes = 0;
     std::span<const Real> inverse_mass{};
 };
@@ -102,9 +101,9 @@ private:
     /// Marks of an element: some_starved if any of its nodes has this mark, and of_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes some of the elements implicit that share a node with an element unstable at `step`: those whose need() is
-    /// at least least_need_, and those whose nodes all belong to implicit elements, because these enlarge no cluster.
-    /// Lowers least_need_ if there are none.
+    /// Makes elements implicit that share a node with an element unstable at `step`, if their need() is at least
+    /// least_need_, or if all their nodes belong to implicit elements, because then they enlarge no cluster. Lowers
+    /// least_need_ if there is no such element.
     void give_up(Real step);
     /// Writes the assumed moduli of the implicit elements. Returns the moment of inertia that they add, and whether
     /// they have too much volume or form too large a cluster.
@@ -122,8 +121,8 @@ private:
     Index first_node_ = 0;
     std::vector<Hold> holds_;
     std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
-    std::vector<ElementLane> stiffness_;  // bound on the material Hessian in the initial shape [Pa]
-    std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its mass share
+    std::vector<ElementLane> stiffness_;  // bound on the material Hessian in the shape `position_` [Pa]
+    std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its initial mass share
     // Values by element: stable step (step_), stable step at the last rigorous bound (measured_), trace at that bound
     // (trace_), present trace (now_), stiffness weight (weight_).
     std::vector<ElementLane> step_, measured_, trace_, now_, weight_;
@@ -136,8 +135,8 @@ private:
 
 /// Makes every explicit element implicit that is unstable at a step of goal.stable. Implicit elements stay implicit,
 /// and the mass shares and mass forms of all other elements are unchanged. This function is faster than
-/// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. Of the limits only that
-/// on the volume is tested (too_many).
+/// ImplicitSearch::find(), but makes more elements implicit, because it does not adapt the mass shares. It tests only
+/// the limit on the volume (too_many).
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out, const ElementBounds& bounds);

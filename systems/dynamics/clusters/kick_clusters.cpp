@@ -107,8 +107,8 @@ template <std::size_t Rows>
              to);
 }
 
-/// Computes the sums of `Rows` rows, from row `place` on, of the complete tile that begins at row `first`. It reads all
-/// entries of the tile itself, so none of them is used twice.
+/// Computes the sums of `Rows` rows, from row `place` on, of the complete diagonal tile that begins at row `first`. The
+/// tile contains both triangles, so its entries do not also stand for their transposed entries.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                       const ByComponent& kick, const ByComponent& sum) {

@@ -16,13 +16,13 @@ namespace skerry {
 
 namespace {
 
-// The assumed modulus of an element is raised when the present stiffness exceeds this fraction of it. It is raised
-// early, so that the stiffness does not exceed it within the next step.
+// The assumed modulus of an element is raised when the present stiffness exceeds this fraction of the assumed modulus.
+// This is early enough that the stiffness does not exceed the assumed modulus within the next step.
 constexpr Real too_near = 0.9;
 constexpr Real raised_to = 2;  // ratio of the new assumed modulus to the present stiffness
 
 /// Adds a linear combination of the three vectors x, y, z in `from`: to += x factor.x + y factor.y + z factor.z. Both
-/// loops evaluate the same expression, so each entry gets the same bits in a vector register and alone.
+/// loops evaluate the same expression, so an entry gets the same bits in the vector loop and in the remainder loop.
 void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
     const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
     std::size_t i = 0;
@@ -36,8 +36,8 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
 
 /// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1, by Woodbury's identity. Row k of G
 /// is the shape gradient of an element at node k. The identity subtracts U (1/weight + G^T U)^-1 U^T with U = A^-1 G.
-/// With the Cholesky factor C C^T = 1/weight + G^T U this is W W^T with W = U C^-T, which is bitwise symmetric in any
-/// order of summation.
+/// With the Cholesky factorisation C C^T = 1/weight + G^T U, the subtracted matrix is W W^T with W = U C^-T. This
+/// product is bitwise symmetric in any order of summation.
 void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
@@ -124,9 +124,8 @@ struct StepForces {
     const PatchForces& patches;
 };
 
-/// Raises the assumed stiffness of the implicit elements of a block whose present stiffness is close to the assumed
-/// stiffness. Returns the kinetic energy that the larger inertia adds [J]. `forces`: forces of the step, or null
-/// between steps.
+/// In one block, raises the assumed stiffness of those implicit elements whose present stiffness is close to it.
+/// Returns the kinetic energy that the larger inertia adds [J]. `forces`: forces of the step, or null between steps.
 Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
                    const StepForces* forces, const StiffenOutputs& out) {
     const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);

@@ -48,9 +48,10 @@ struct StiffenOutputs {
     }
 };
 
-/// Raises the assumed stiffness of implicit elements whose present stiffness exceeds 0.9 of it. The new value is twice
-/// the present stiffness. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that the
-/// larger inertia adds at unchanged velocities, without that of ghosts [J]. Sequential, in element order.
+/// Raises the assumed stiffness of implicit elements whose present stiffness exceeds 0.9 times the assumed stiffness.
+/// The new value is twice the present stiffness. Updates the inertia matrices of the clusters concerned. Returns the
+/// kinetic energy that the larger inertia adds at unchanged velocities, without that of ghosts [J]. Sequential, in
+/// element order.
 ///
 /// The momentum of the deformation of a stiffened element stays constant, so its rate of deformation decreases. The
 /// impulse that this takes (docs/methods/clusters.md 6) is added to the element forces, which act for the time `kick`

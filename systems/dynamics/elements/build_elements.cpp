@@ -130,8 +130,8 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 namespace {
 
 /// Chooses the order of the nodes of elements in the rows of their blocks. The kernel adds forces to nodes row by row
-/// and lane by lane. Each addition waits for the previous addition to the same node. Every row therefore gets, of the
-/// remaining nodes of the element, the one with the oldest addition.
+/// and lane by lane. Each addition waits for the previous addition to the same node. So every row gets that remaining
+/// node of the element to which a force was added longest ago.
 class RowOrder {
 public:
     explicit RowOrder(std::size_t node_count) : last_addition_(node_count, 0) {}
@@ -177,7 +177,8 @@ void fill_rows(const ElementList& list, std::span<const Index> lanes, Index firs
         }
     }
     // The gradient of the first node is minus the sum of all other gradients, summed in row order like the forces in
-    // the kernel, which sets the force on the first node to minus the sum of the other forces.
+    // the kernel, which sets the force on the first node to minus the sum of the other forces. It is written as 0 -
+    // sum, so that a sum of zero does not give -0.
     for (std::size_t l = 0; l < element_lanes; ++l)
         for (std::size_t i = 0; i < 3; ++i)
             nodes.gradient[static_cast<std::size_t>(rows.begin)][i][l] = 0 - others[l][static_cast<Eigen::Index>(i)];

@@ -62,9 +62,9 @@ void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, 
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);
 
-/// Builds the patches, the lists of their nodes, and the slots of element nodes. Covers only blocks and nodes that are
-/// in no patch yet, and keeps the patches that `patches` already has. The slots of a patch are in the order of the
-/// nodes. The slots of a node are in the order of the patches.
+/// Builds the patches, the lists of their nodes, and the slots of element nodes. A slot is the entry of a patch for one
+/// of its nodes. Covers only blocks and nodes that are in no patch yet, and keeps the patches that `patches` already
+/// has. The slots of a patch are in the order of the nodes. The slots of a node are in the order of the patches.
 void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes, ElementPatches& patches);
 
 /// Removes all patches except those of the first `block_count` blocks and `node_count` nodes, which must belong to

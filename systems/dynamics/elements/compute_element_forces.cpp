@@ -313,8 +313,8 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
-/// First block after `begin` whose material or part of the stress (ElementPart) differs from those of `begin`; `end` if
-/// there is none.
+/// First block after `begin` whose material or part of the stress (ElementPart) differs from that of block `begin`;
+/// `end` if there is none.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
     while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin]) ++b;

@@ -44,7 +44,7 @@ struct PatchRows {
 /// in edge() need. One full-width load per position and a few shuffles replace three gathers, each of which takes one
 /// load per lane.
 #ifdef __AVX512VL__
-// Halves of registers are moved with intrinsics. For __builtin_shufflevector gcc shuffles the whole register.
+// Halves of registers are moved with intrinsics, because for __builtin_shufflevector gcc shuffles the whole register.
 
 /// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
 struct Corner {
@@ -170,7 +170,8 @@ inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3>
     });
 }
 
-/// With 512-bit registers gcc would load a gradient from memory at each use, which takes more time than the arithmetic.
+/// Loads a gradient into registers. With 512-bit registers gcc would otherwise load it from memory at each use, which
+/// takes more time than the arithmetic.
 template <class T>
 [[gnu::always_inline]] inline LaneVec3<T> load_gradient(const ElementGradient& gradient, std::size_t part) {
     const LaneVec3<T> g{load_part<T>(gradient[0], part), load_part<T>(gradient[1], part),
@@ -301,7 +302,7 @@ template <class Take>
     const Real4 z02 = f.z, z13 = __builtin_shufflevector(f.z, f.z, 1, 1, 3, 3);
     const auto add = [&](std::ptrdiff_t to, const Real4& lane) __attribute__((always_inline)) {
         const Real4 sum = computed_here(force[to] + lane);
-        asm("" : "+r"(to));  // else gcc takes an instruction to compute the address for both accesses
+        asm("" : "+r"(to));  // else gcc adds an instruction that computes the address of the load and the store
         force[to] = sum;
     };
     add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));

@@ -27,9 +27,9 @@ struct ElementFields {
     Mat3 strain;                         // Green strain
 };
 
-/// Writes the fields of the elements in some blocks of a range. `asked`: these blocks, ascending and counted from
-/// blocks.begin. Block asked[i] is written to fields[8 i + lane]. The values do not depend on which other blocks are
-/// asked.
+/// Writes the fields of the elements in some blocks of a range. `asked`: numbers of the blocks to evaluate, ascending,
+/// counted from blocks.begin. Block asked[i] is written to fields[8 i + lane]. The values do not depend on which other
+/// blocks are asked.
 void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
                     std::span<const Vec3> position, std::span<ElementFields> fields);
 

@@ -28,8 +28,8 @@ std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<cons
 /// volumetric part of the stress do not count. `of_elements`: strain by lane of the blocks.
 std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
 
-/// Mean of a value of the elements over those that cover a tetrahedron. Elements with only the volumetric part of the
-/// stress do not count. `of_blocks`: values by block and lane.
+/// For each of the `count` tetrahedra of a body: mean of an element value over the elements that cover it. Elements
+/// with only the volumetric part of the stress do not count. `of_blocks`: values by block and lane.
 std::vector<Real> mean_of_tetrahedra(const ElementCover& cover, std::span<const ElementLane> of_blocks,
                                      std::size_t count);
 

@@ -21,7 +21,7 @@ struct BlockRows {
     void multiply(std::span<const Vec3> x, std::span<Vec3> out) const;
 };
 
-/// Position of each node in an elimination order with little fill-in (minimum degree). `neighbours` lists for each node
+/// Index of each node in an elimination order with little fill-in (minimum degree). `neighbours` lists for each node
 /// all other nodes with which the node shares a block; each pair occurs in the lists of both nodes.
 std::vector<Index> elimination_places(const std::vector<std::vector<Index>>& neighbours);
 
@@ -42,8 +42,8 @@ public:
 private:
     template <class X>
     void solve_in_place(X* x) const;
-    /// Columns of the nonzero blocks in row `k` of L. A column comes after all columns of the row on which it depends.
-    /// Sets mark_ of these columns and of k to k.
+    /// Columns of the nonzero blocks in row `k` of L. Each column comes after those columns of the row on which it
+    /// depends. Sets mark_ of these columns and of k to k.
     std::span<const Index> columns_of(const BlockRows& pattern, Index k);
 
     std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index for a root

@@ -12,8 +12,9 @@
 
 namespace skerry {
 
-/// Displacements of the nodes of a body from their rest positions [m]. The index of an entry is the position of its
-/// node in the elimination order. If values are stored by node instead, `node_at` gives the node at each position.
+/// Displacements of the nodes of a body from their rest positions [m]. The index of an entry is the index of its node
+/// in the elimination order. If values are stored by node instead, `node_at` gives the node at each index of the
+/// elimination order.
 class Displacements {
 public:
     Displacements(std::span<const Vec3> by_place) : by_place_(by_place) {}
@@ -33,8 +34,7 @@ private:
 class BodyElements {
 public:
     BodyElements() = default;
-    /// `constants`: material constants by row of MaterialTable; `place`: position of each node in the elimination
-    /// order.
+    /// `constants`: material constants by row of MaterialTable; `place`: index of each node in the elimination order.
     BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
                  std::span<const Index> place);
 
@@ -53,8 +53,7 @@ public:
         Real linear, off;
     };
     Misfit misfit(const Displacements& displacement) const;
-    /// Computes out = dU/dx, the gradient of the elastic energy U, by position of the node in the elimination order
-    /// [N].
+    /// Computes out = dU/dx, the gradient of the elastic energy U, by index of the node in the elimination order [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
     /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy U to `matrix` [N/m]. Negative eigenvalues
     /// of single elements are left out, so that the sum is positive semidefinite. The first call finds which blocks of

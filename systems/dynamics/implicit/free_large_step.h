@@ -6,13 +6,13 @@
 
 namespace skerry {
 
-/// Computes the node velocities of a step at large strain by Newton's method, by position of the node in the
-/// elimination order. Returns false if Newton's method fails.
+/// Computes the node velocities of a step at large strain by Newton's method, by index of the node in the elimination
+/// order. Returns false if Newton's method fails.
 bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                           std::size_t r, Real h, Real theta, StiffBody& stiff, std::span<Vec3> out);
 
-/// Computes the state at the end of a step in which strain is or was large. Reads the displacements at the end of the
-/// step, and from out.velocity_next the node velocities that led to them. Returns the damped energy [J].
+/// Computes the state at the end of a step in which strain is large at some time. Reads the displacements at the end of
+/// the step, and from out.velocity_next the node velocities that led to them. Returns the damped energy [J].
 Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out);
 

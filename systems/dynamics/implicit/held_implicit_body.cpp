@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Gives access to the nodes of a held body by index n in the body. An attachment holds the body, but only some of its
-/// nodes.
+/// Access to the nodes of a body whose frame an attachment holds, by index n in the body. The attachment holds only
+/// some of the nodes.
 struct HeldNodes {
     const ImplicitBodies& bodies;
     const LedFrame& frame;
@@ -47,7 +47,7 @@ LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : is_sti
 
 namespace {
 
-/// True if a step with the given velocities leads to large strain. `velocity`: by position in the elimination order, in
+/// True if a step with the given velocities leads to large strain. `velocity`: by index in the elimination order, in
 /// the frame of the mesh at the end of the step.
 bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec3> displacement,
                    std::span<const Vec3> velocity, Real h, StiffBody& stiff) {
@@ -63,8 +63,8 @@ bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec
 }
 
 /// Computes the node velocities of a step at large strain by Newton's method, in the frame of the mesh at the end of
-/// the step, by position in the elimination order. `outer_force(n)`: force on node n in this frame [N]. Returns false
-/// if Newton's method fails.
+/// the step, by index in the elimination order. `outer_force(n)`: force on node n in this frame [N]. Returns false if
+/// Newton's method fails.
 bool kick_large(const HeldNodes& nodes, const OfBody& of, std::size_t r, Real within, auto&& outer_force,
                 StiffBody& stiff, std::span<Vec3> out) {
     LargeStep& step = stiff.large_step;
@@ -115,7 +115,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
                 at_end = frame.carried(nodes.arm(n), displacement[n]);
                 if (nodes.held(n)) at_end += h * nodes.led(n);
             }
-            // `next` temporarily holds forces, by position in the elimination order
+            // `next` temporarily holds forces, by index in the elimination order
             stiff.elastic_forces(impulse, next);
             for (std::size_t k = 0; k < of.count; ++k)
                 force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
@@ -144,9 +144,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 
 namespace {
 
-/// Computes the elastic forces on the nodes in a step of large strain, by position in the elimination order [N]. Forces
-/// on free nodes follow from the motion of these nodes, forces on held nodes from the material laws. These forces do
-/// not add up to zero exactly, because Newton's method leaves a residual and the material laws do not see the motion by
+/// Computes the elastic forces on the nodes in a step of large strain, by index in the elimination order [N]. Forces on
+/// free nodes follow from the motion of these nodes, forces on held nodes from the material laws. These forces do not
+/// add up to zero exactly, because Newton's method leaves a residual and the material laws do not see the motion by
 /// contacts. The missing force is divided equally among the held nodes.
 void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,

@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Prescribed motion in this step of a held body, as the motion of the frame of its mesh.
+/// Prescribed motion of the mesh frame of a held body in this step.
 struct LedFrame {
     bool is_still;    // true if the frame does not move in this step
     Mat3 turn_start;  // rotation from the frame of the mesh to the world at the start of the step

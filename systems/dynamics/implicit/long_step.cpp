@@ -153,7 +153,7 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         if (!times.ends) continue;
         // `left` is the length of a long step times the velocity that contacts would have caused in a complete long
         // step. The next long step assumes this velocity at first. step.answer covers only the time step.done, hence
-        // the factor.
+        // the factor times.length / step.done.
         for (std::size_t n = 0; n < of_body.size(); ++n)
             of_body[n] = times.length * (times.length / step.done) * step.answer[n];
     }

@@ -23,7 +23,7 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
 }
 
 /// True if a step of length `h` [s] with these velocities leads from small to large strain. `displacement`: by node;
-/// `velocity`: by position in the elimination order.
+/// `velocity`: by index in the elimination order.
 bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, const Vec3& angular_momentum,
                    Real h, const OfBody& of, StiffBody& stiff) {
     if (!stiff.elements().any_bends()) return false;

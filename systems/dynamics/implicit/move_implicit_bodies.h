@@ -107,8 +107,8 @@ struct ImplicitTimes : LongStepTimes {
 
 struct ImplicitLoads {
     std::span<const Vec3> load;  // applied force by node; empty if there are no applied forces [N]
-    Vec3 gravity;                // used for nodes of held bodies only: the frames of free bodies fall [m/s^2]
-    // Time for which loads act on other bodies. On implicit bodies the loads act for the complete step [s].
+    Vec3 gravity;                // accelerates only nodes of held bodies: the frames of free bodies fall [m/s^2]
+    // Time for which loads act on explicit and rigid bodies. On implicit bodies they act for the complete step [s].
     Real kick;
 
     static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced,
@@ -207,8 +207,8 @@ struct ImplicitStrains {
 /// Result of strain_implicit_bodies for one body.
 struct StrainPart {
     Real damped = 0;  // damped energy minus the work of the moment of the attachment [J]
-    // (h - loads.kick) times weight and loads: their impulse over the complete step minus that over the time
-    // loads.kick, for which they act on other bodies [N s].
+    // (h - loads.kick) times weight and loads [N s]: their impulse over the complete step minus their impulse over the
+    // time loads.kick, for which they act on explicit and rigid bodies.
     Vec3 impulse = Vec3::Zero();
 };
 
@@ -220,10 +220,10 @@ struct StrainFindings {
     Index unsolved = no_index;  // first row of BodyTable for which Newton's method failed
 };
 
-/// Computes velocities and displacements at the end of the step. The sums leave out ghosts, which the owner counts.
-/// Adds the elastic forces on held nodes to `force`, which then contains forces that act for the time loads.kick.
-/// Writes the elastic moments on held frames to `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel
-/// over bodies.
+/// Computes velocities and displacements at the end of the step. Returns sums over all bodies except ghosts, which
+/// their owners count. Adds the elastic forces on held nodes to `force`, which then contains forces that act for the
+/// time loads.kick. Writes to `hold_moment` the angular impulses by which attachments balance the elastic forces of
+/// held bodies [N m s]. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);

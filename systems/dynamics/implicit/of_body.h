@@ -1,4 +1,4 @@
-// Table ranges of one implicit body, and the positions of its nodes in the elimination order.
+// Table ranges of one implicit body, and the indices of its nodes in the elimination order.
 #pragma once
 
 #include <span>
@@ -31,9 +31,9 @@ Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
 /// matrix cannot be factored.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
-/// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by position in the elimination
-/// order [N s]. M are the node masses. `force`: elastic forces, by position [N]; `within`: theta times the step length
-/// [s].
+/// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by index in the elimination
+/// order [N s]. M are the node masses. `force`: elastic forces, by the same index [N]; `within`: theta times the step
+/// length [s].
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
                      std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
 

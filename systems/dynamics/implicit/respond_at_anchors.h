@@ -35,8 +35,8 @@ struct AnchorResponses {
 };
 
 /// Writes the response at each anchor: the velocity of the anchor, in world axes, that a unit impulse on it causes in
-/// this step by deforming the body. Only anchors of dampers on implicit bodies respond; all others get zero. Returns
-/// false if there is no implicit body.
+/// this step by deforming the body. Only anchors of dampers on awake implicit bodies respond; all others get zero.
+/// Returns false if there is no implicit body.
 bool respond_at_anchors(const ImplicitBodies& bodies, const DampedAnchors& anchors, const ImplicitTimes& times,
                         StiffBodies& stiff, const AnchorResponses& out);
 

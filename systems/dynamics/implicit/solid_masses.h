@@ -24,7 +24,7 @@ struct BodyShape {
 class SolidMasses {
 public:
     SolidMasses() = default;
-    /// `mass`: by tetrahedron [kg]; `place`: position of each node in the elimination order.
+    /// `mass`: by tetrahedron [kg]; `place`: index of each node in the elimination order.
     SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
                 std::span<const Index> place);
 
@@ -32,7 +32,7 @@ public:
     void find_arms(BodyShape& shape) const;
 
 private:
-    // For each tetrahedron: positions of the corners in the elimination order.
+    // For each tetrahedron: indices of the corners in the elimination order.
     std::vector<std::array<Index, 4>> corners_;
     std::vector<Real> share_;  // a twentieth of the mass of each tetrahedron [kg]
 };

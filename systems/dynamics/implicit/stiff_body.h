@@ -30,10 +30,11 @@ struct NewtonCounts {
     }
 };
 
-/// State of one step of a body at large strain, by position of the nodes in the elimination order
+/// State of one step of a body at large strain, by index of the nodes in the elimination order
 /// (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
-    std::vector<Vec3> carried;   // displacements, in the frame at the end of the step, of nodes that stand still [m]
+    // displacements if nodes stood still in the step, in the frame at the end of the step [m]
+    std::vector<Vec3> carried;
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
     std::vector<Vec3> force;     // gradient dU/du of the elastic energy and the energy of the spin at `within` [N]
@@ -84,7 +85,7 @@ struct LongStep {
 };
 
 /// Stiffness, masses and matrix factor of one implicit body. Vectors by node are in the elimination order unless a
-/// comment says "by node of the body"; place() gives the position of a node in this order.
+/// comment says "by node of the body"; place() gives the index of a node in this order.
 class StiffBody {
 public:
     StiffBody() = default;
@@ -103,7 +104,7 @@ public:
     bool empty() const { return place_.empty(); }
     std::size_t size() const { return place_.size(); }
     Index place(std::size_t node) const { return place_[node]; }
-    /// Node of the body at each position of the elimination order.
+    /// Node of the body at each index of the elimination order.
     std::span<const Index> nodes() const { return node_; }
     Real mass(std::size_t place) const { return mass_[place]; }
 
@@ -118,15 +119,15 @@ public:
     /// small_strain in an element with deformation gradient F, and in addition the energies or the spin are inaccurate.
     /// The energies are inaccurate if the energies by linear elasticity and by the material laws differ, summed over
     /// the elements, by more than energy_share of the linear energy. The spin is inaccurate if its energy exceeds
-    /// energy_share of the linear energy, and the inertia of the present shape instead of that at rest changes the spin
-    /// by more than the fraction small_strain.
+    /// energy_share of the linear energy, and the spin computed with the inertia of the present shape differs from the
+    /// spin computed with the inertia at rest by more than the fraction small_strain.
     ///
     /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
         return is_beyond({displacement, node_}, angular_momentum);
     }
-    /// Variant of becomes_large() for displacements by position in the elimination order. Evaluates elements only if
-    /// nodes have moved far enough since the last evaluation for strain to become large.
+    /// Variant of becomes_large() for displacements by index in the elimination order. Evaluates elements only if nodes
+    /// have moved far enough since the last evaluation for strain to become large.
     bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
     /// must be below a quarter of the bound in becomes_large(). In addition all strains |F - 1| must be below a tenth
@@ -141,11 +142,11 @@ public:
     void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
-    /// Sets the shape by its displacements. If the matrix of respond() is a tangent, respond() removes the rigid-body
-    /// motion of this shape.
+    /// Sets shape() to the shape with the given displacements. If the matrix of respond() is a tangent, respond()
+    /// removes the rigid-body motion of this shape.
     void stand_in(const Displacements& displacement);
     /// Removes momentum and angular momentum from node velocities, for the shape that stand_in() has set. `velocity`:
-    /// by position in the elimination order [m/s].
+    /// by index in the elimination order [m/s].
     void take_momenta(std::span<Vec3> velocity) const { take_momenta_of(velocity); }
     const BodyShape& shape() const { return shape_; }
     /// Rotates displacements (by node) into the frame in which they contain no rigid rotation
@@ -157,7 +158,7 @@ public:
     /// nodes in A have only a diagonal entry.
     bool prepare(Real inertia, Real stiffness);
     /// Makes A = inertia M + stiffness d2U/du2 the matrix of respond(). d2U/du2 is the second derivative of the elastic
-    /// energy at `displacement` (by position in the elimination order), without the negative eigenvalues of single
+    /// energy at `displacement` (by index in the elimination order), without the negative eigenvalues of single
     /// elements. Always computes a new factor, and forces the next prepare() to compute one. Returns false if A is not
     /// positive definite.
     bool prepare_tangent(Real inertia, Real stiffness, std::span<const Vec3> displacement);
@@ -177,9 +178,8 @@ public:
     /// nodes are ignored, and held nodes get zero velocity.
     void respond(std::span<Vec3> impulse) const;
 
-    /// Velocities of all nodes per unit impulse on one node, by position in the elimination order, computed by
-    /// respond() [1/kg]. The result is stored until the matrix factor changes or newer results need its memory
-    /// (column_memory).
+    /// Velocities of all nodes per unit impulse on one node, by index in the elimination order, computed by respond()
+    /// [1/kg]. The result is stored until the matrix factor changes or newer results need its memory (column_memory).
     std::span<const Mat3> column(std::size_t node);
     /// Velocities of the given nodes per unit impulse on these nodes, computed by respond() [1/kg]. The result is a
     /// symmetric matrix, stored column by column, with three rows and three columns for each node. It is zero if there
@@ -214,11 +214,11 @@ private:
     template <class X>
     void take_momenta_of(std::span<X> velocity) const;
 
-    std::vector<Index> place_;  // position of each node of the body in the elimination order
-    std::vector<Index> node_;   // node of the body at each position
-    std::vector<Real> mass_;    // by position in the elimination order [kg]
-    std::vector<Vec3> arm_;  // rest position relative to the centre of mass, by position in the elimination order [m]
-    // 1 for held nodes, by position in the elimination order; empty if no node is held.
+    std::vector<Index> place_;  // index of each node of the body in the elimination order
+    std::vector<Index> node_;   // node of the body at each index of the elimination order
+    std::vector<Real> mass_;    // by index in the elimination order [kg]
+    std::vector<Vec3> arm_;     // rest position relative to the centre of mass, by index in the elimination order [m]
+    // 1 for held nodes, by index in the elimination order; empty if no node is held.
     std::vector<std::uint8_t> held_;
     Real total_mass_ = 0;
     Mat3 inverse_inertia_ = Mat3::Zero();        // inverse inertia of the nodal masses at rest [1/(kg m^2)]
@@ -236,14 +236,14 @@ private:
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
-    // Velocity responses to the nodal momenta of unit translations (shifts_) and of unit rotations (turns_), by
-    // position in the elimination order.
+    // Velocity responses to the nodal momenta of unit translations (shifts_) and of unit rotations (turns_), by index
+    // in the elimination order.
     std::vector<Mat3> shifts_, turns_;
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
     // Inputs and results of the last evaluation in becomes_large_in_places(). evaluated_at_ is empty before the first
     // evaluation, and after one with a strain that is not finite.
-    std::vector<Vec3> evaluated_at_;  // displacements at the last evaluation, by position in the elimination order [m]
+    std::vector<Vec3> evaluated_at_;      // displacements at the last evaluation, by index in the elimination order [m]
     Vec3 evaluated_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
     Real strain_there_ = 0;
     bool large_there_ = false;

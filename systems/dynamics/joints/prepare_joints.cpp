@@ -67,7 +67,8 @@ Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first,
     return joints.kind[j] == JointKind::hinge ? Vec3(0, 0, shift.z()) : shift;
 }
 
-/// Block of joint `j` in a mimic equation (MimicShare), and the coordinate of the joint.
+/// Block of joint `j` in a mimic equation, which couples the coordinates of two joints (MimicShare), and the coordinate
+/// of joint `j`.
 struct MimicAxis {
     JointBlock block;
     Real coordinate;

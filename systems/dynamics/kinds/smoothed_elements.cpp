@@ -94,8 +94,9 @@ void add_groups(const RestMesh& mesh, const Ragged<Index>& groups, Real share, E
                 element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
         }
         element.drop_nothings();
-        // The force on node 0 is minus the sum of the other forces (for_each_force), as if node 0 had this gradient.
-        // The sum of the tetrahedron gradients differs from it by rounding errors and dropped nodes.
+        // The force on node 0 is minus the sum of the other forces (for_each_force). Its gradient is therefore set to
+        // minus the sum of the other gradients, which differs from the sum of its tetrahedron gradients by rounding
+        // errors and dropped nodes.
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < element.gradient.size(); ++k) others += element.gradient[k];
         element.gradient.front() = -others;
@@ -123,8 +124,8 @@ void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list
             sides.push_back({std::min(node[a], node[b]), std::max(node[a], node[b]), static_cast<Index>(sides.size())});
     const auto node_count = static_cast<Index>(mesh.position.size());
     counting_sort(sides, spare, node_count, [](const Side& side) { return side.low; });
-    // The sort has placed edges with one lower node next to each other. `seen[n]` is the first of these edges with the
-    // upper node n; an entry with another lower node is out of date.
+    // The sort has placed edges with the same lower node next to each other. `seen[n]` is the first of these edges with
+    // the upper node n; an entry with another lower node is out of date.
     std::vector<Index> first_alike(sides.size());
     std::vector<Side> seen(mesh.position.size(), {no_index, no_index, no_index});
     for (const Side& side : sides) {

@@ -118,8 +118,8 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
-/// Rigid motion towards which node velocities are damped: `linear` at the point `origin` + `centre`, and `angular`.
-/// `fraction`: fraction of the difference from this motion that damping removes.
+/// Rigid motion towards which node velocities are damped. `linear`: velocity of the point `origin` + `centre`.
+/// `angular`: angular velocity. `fraction`: fraction of the difference from this motion that damping removes.
 struct DampedTowards {
     Vec3 linear, angular, origin, centre;
     Real lag, fraction;

@@ -51,7 +51,8 @@ void for_each_node(const Stencil& stencil, auto&& visit) {
 /// contact without held nodes.
 bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts, std::size_t c,
                       std::span<const HeldRows::Node> node) {
-    // The node mobility along the normal counts as zero if the held directions leave a smaller share of it.
+    // Least share of the node mobility along the normal that counts. If the held directions leave less, the gap cannot
+    // change.
     constexpr Real least_share = 1e-6;
     Real all = 0, left = 0;
     for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {

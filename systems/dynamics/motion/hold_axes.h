@@ -65,7 +65,7 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
 struct HeldRows {
     struct Node {
         Mat3 held = Mat3::Zero();     // projection onto the directions along which attachments hold the node
-        Vec3 impulse = Vec3::Zero();  // sum of the impulses with which the solver starts at the node [N s]
+        Vec3 impulse = Vec3::Zero();  // sum of the warm-start impulses of contacts at the node [N s]
         bool in_region = false;       // true if a contact, tie or cable can move the node
     };
     Column<Index> entry;  // for each held row, in their order: row of AttachmentTable::node
@@ -73,8 +73,8 @@ struct HeldRows {
 };
 
 /// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move: one row for each held
-/// direction of such a node. The row demands the prescribed velocity along the direction. A contact whose gap only
-/// motion along held directions can change requests no rows, because no impulses satisfy both the contact and the row.
+/// direction of such a node. Each row demands the prescribed velocity along its direction. A contact requests no rows
+/// if only motion along held directions can change its gap, because no impulses satisfy both the contact and the rows.
 /// Sequential.
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
                        HeldRows& rows);

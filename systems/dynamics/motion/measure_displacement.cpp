@@ -72,7 +72,8 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.frame[b].offset = Vec3::Zero();
             const Range nodes = bodies.nodes(b);
             out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
-            // This speed must belong to the new frame: the contact search of the next step uses both (step_reach.cpp).
+            // This speed must be relative to the new frame: the contact search of the next step uses it together with
+            // this frame (step_reach.cpp).
             out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

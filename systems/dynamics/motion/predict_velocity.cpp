@@ -49,7 +49,7 @@ private:
     }
 
     /// Calls visit(node, sum) for each node, with the sum of the forces on the node from all patches. The patches are
-    /// added in order, so the sums are bitwise equal for any number of workers.
+    /// added in ascending order, so the sums are bitwise equal for any number of workers.
     void sum_slots(std::size_t begin, std::size_t end, auto&& visit) const {
         const RaggedView<Index>& slots = nodes.slots_of_node;
         const Index* slot = slots.item.data() + slots.offset[begin];

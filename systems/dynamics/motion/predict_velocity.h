@@ -21,7 +21,7 @@ struct KickInputs {
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};  // applied force; empty if no node has one [N]
-    // Column of BodyTable; empty if no body is idle. Idle bodies are skipped.
+    // Column of BodyTable; empty if no body is idle. Idle bodies (asleep, or led by another rank) are skipped.
     std::span<const std::uint8_t> body_idle = {};
     // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty if no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};

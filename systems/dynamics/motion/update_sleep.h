@@ -66,14 +66,14 @@ struct PressInputs {
     }
 };
 
-/// Marks both bodies of every contact with a stored impulse from earlier steps. For sleeping bodies this is the impulse
-/// from the time when they fell asleep, because the present solve does not include the weight of sleeping bodies. If no
-/// impulses are stored, every contact counts.
+/// Marks both bodies of every contact with a stored impulse from earlier steps. For sleeping bodies the stored impulse
+/// is that of the step in which they fell asleep. The present solve would not show that such a contact is pressed,
+/// because it leaves out the weight of sleeping bodies. If no impulses are stored, every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes a body if it is marked in `pressed` or `driven`, if a contact of this step has an impulse or an overlap, if
-/// BodyLinks connects it to an awake body, or if an attachment moves it. Contacts between sleeping bodies are not
-/// searched, so each contact has an awake body or a moving collider. Returns false if no body was woken.
+/// Wakes a body if it is marked in `pressed` or `driven`, if one of its contacts in this step has an impulse or a
+/// negative gap, if BodyLinks connects it to an awake body, or if an attachment moves it. Contacts between sleeping
+/// bodies are not searched, so each contact has an awake body or a moving collider. Returns false if no body was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
                  std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep,
@@ -102,8 +102,8 @@ struct RestInputs {
     std::span<const Mat3> rigid_rotation = {};
     std::span<const Index> rigid_holder = {};  // empty if no body is held
     std::span<const Index> body_core_nodes = {};
-    // For each body, nonzero if a value that acts on the body changes in this step: of a load, motor, spring, cable,
-    // cavity or family of fibres. May be empty.
+    // For each body, nonzero if a load, motor, spring, cable, cavity or family of fibres that acts on the body changes
+    // in this step. May be empty.
     std::span<const std::uint8_t> driven = {};
     GhostMarks ghosts = {};
 

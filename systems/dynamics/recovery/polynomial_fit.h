@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Number of terms of a polynomial of three variables of degree 1 and 2.
+/// Numbers of terms of polynomials of degree 1 and 2 in three variables.
 inline constexpr int linear_terms = 4, quadratic_terms = 10;
 
 /// Weighted least-squares fit of a linear or quadratic polynomial to samples, evaluated at the origin. Terms that the
@@ -78,7 +78,7 @@ private:
 };
 
 /// Replaces the weights of samples by factors: the sum of factor * sample is the value of the fit at the origin.
-/// Returns the number of terms that were not dropped. `offset`: of the samples from the origin.
+/// Returns the number of terms that were not dropped. `offset`: positions of the samples relative to the origin.
 template <int terms>
 int find_fit_factors(std::span<const Vec3> offset, std::span<Real> weight) {
     PolynomialFit<terms> fit;

@@ -14,7 +14,7 @@ namespace skerry {
 struct RecoveryState {
     ElementInputs elements;
     Range blocks;                    // element blocks of the body
-    std::span<const Vec3> position;  // nodes that `elements` refers to [m]
+    std::span<const Vec3> position;  // of all nodes, by the node numbers in `elements` [m]
     Index first_node;                // first node of the body in `position`
 };
 
@@ -33,7 +33,7 @@ struct NodeFields {
 /// - Node of a smooth surface: stress that balances the traction, and agrees with the stretch of the surface.
 /// - Node at an edge, a corner or an interface of materials: linear fit of the values at the nodes within two rings of
 ///   tetrahedra, for each material. The results of the materials are averaged by volume.
-/// - Where the nodes around do not suffice for these fits: mean over the elements around the node.
+/// - Where too few values determine a fit: mean over the elements around the node.
 NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) of_blocks);
 
 }  // namespace skerry

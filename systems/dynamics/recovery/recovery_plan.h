@@ -42,9 +42,9 @@ struct RecoveryPlan {
     // nodes and for materials that yield. The value is then a sum of values of the elements around the node.
     std::vector<Index> smooth;
     // For each row of `smooth`: factors of the elements around its node, by place, ascending. For a node without a row
-    // of `faces` they are the factors of a fit, else those of the mean, which starts Newton's method and replaces its
-    // result if it fails. `strained`: elements with strain. `volumetric`: elements that have only the volumetric part
-    // of the stress.
+    // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
+    // Newton's method and replaces its result if the method fails. `strained`: elements with strain. `volumetric`:
+    // elements that have only the volumetric part of the stress.
     Ragged<Share> strained, volumetric;
 
     struct Face {
@@ -56,8 +56,8 @@ struct RecoveryPlan {
     };
     std::vector<Face> faces;
     Ragged<SurfaceTriangle> triangles;  // by face
-    // For each face: numbers (Corner::row) of the nodes whose force is needed; first that of the face's own node, then
-    // those of the inner nodes in the tetrahedra around this node.
+    // For each face: numbers (Corner::row) of the nodes whose force is needed; first the number of the face's own node,
+    // then the numbers of the inner nodes in the tetrahedra around this node.
     Ragged<Index> force;
     /// Corner of an element at a node whose force is needed.
     struct Corner {

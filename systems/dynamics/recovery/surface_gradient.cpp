@@ -53,7 +53,8 @@ Real modulus_of(const MaterialConstants& material) {
     return 2 * material.shear_modulus + std::abs(material.lame_lambda);
 }
 
-/// Slope d(P N)/db for F = base + b across^T. The function add_stiffness of a material law adds its terms.
+/// Slope d(P N)/db for F = base + b across^T; symbols: SurfaceAround and surface_gradient() in the header. The function
+/// add_stiffness of a material law adds its terms.
 struct SlopeTerms {
     LaneVec3<Real8> across, normal;
     LaneMat3<Real8> sum{};
@@ -72,7 +73,7 @@ struct SlopeTerms {
     void add_turned_transpose(const Real8& s, const Matrix& R) {
         add(s, times(R, across), times(R, normal));
     }
-    /// A change u of b changes cof(F) N by u x F (N x across).
+    /// Adds the slope of cof(F) N times s: a change u of b changes cof(F) N by u x F (N x across).
     void add_cofactor_slope(const Real8& s, const LaneMat3<Real8>& F) {
         const LaneVec3<Real8> w = s * multiply(F, cross(normal, across));
         sum.c0.y -= w.z;
@@ -151,8 +152,8 @@ std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node
 
 SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std::span<const Index> triangles,
                              std::span<const Vec3> rest) {
-    // Least cosine of the angle between a triangle and the mean surface (30 degrees). Two faces that differ by 60
-    // degrees or more thus form an edge.
+    // Least cosine of the angle between a triangle and the mean surface (30 degrees). Two faces whose normals differ by
+    // 60 degrees or more thus form an edge.
     constexpr Real least_cosine = 0.866;
     const auto corner = [&](Index t, std::size_t k) {
         return static_cast<std::size_t>(surface[static_cast<std::size_t>(t)][k]);

@@ -21,7 +21,7 @@ struct SurfaceTriangle {
 /// Returns nullopt for a triangle without area. `rest`: rest positions of all nodes [m].
 std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node, std::span<const Vec3> rest);
 
-/// Sums over the surface triangles around a node, at rest.
+/// Surface around a node at rest, from sums over its triangles.
 struct SurfaceAround {
     // outward area vector of the node: a third of the sum of the area vectors of its triangles [m^2]
     Vec3 area = Vec3::Zero();
@@ -29,8 +29,9 @@ struct SurfaceAround {
     bool smooth = false;         // false if the surface has an edge or corner at the node
     // Terms of a least-squares fit for a smooth surface: `inverse` and `across`. Among all F with a given product b = F
     // N, F = stretch inverse + b across^T differs least from the deformation gradients within the triangles. Here
-    // `stretch` is the result of surface_stretch.
-    Mat3 inverse = Mat3::Zero();  // inverse of the sum of area times projector, in the tangent plane [1/m^2]
+    // `stretch` is the result of surface_stretch, and `inverse` is the inverse, within the tangent plane, of the sum of
+    // area times projector onto each triangle [1/m^2].
+    Mat3 inverse = Mat3::Zero();
     Vec3 across = Vec3::Zero();
 };
 

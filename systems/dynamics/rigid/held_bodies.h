@@ -14,9 +14,11 @@
 namespace skerry {
 
 struct RigidHolds {
-    std::span<const Index> holder;        // RigidBodyTable
-    std::span<const Vec3> held_position;  // RigidBodyTable
-    std::span<const Mat3> held_rotation;  // RigidBodyTable
+    // Columns of RigidBodyTable: attachment that holds the body, or no_index, and pose of the frame of the mesh in the
+    // frame of this attachment [m].
+    std::span<const Index> holder;
+    std::span<const Vec3> held_position;
+    std::span<const Mat3> held_rotation;
     std::span<const RigidMotion> motion;  // column of AttachmentTable: motion of the attachment in this step
 
     static RigidHolds bind(const Binder& binder, const RigidBodyTable& rigid, const AttachmentTable& attachment) {
@@ -30,8 +32,7 @@ struct RigidHolds {
     const RigidMotion& motion_of(std::size_t r) const { return motion[static_cast<std::size_t>(holder[r])]; }
 };
 
-/// Pose of a held body at the end of the step. The nodes of the body have the same pose, because drive_nodes moves them
-/// there.
+/// Pose of a held body at the end of the step. drive_nodes moves the nodes of the body to this pose.
 struct HeldPose {
     Vec3 center;
     Mat3 rotation;  // rotation from the principal frame to the world

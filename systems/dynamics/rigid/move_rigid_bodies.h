@@ -65,7 +65,7 @@ struct RigidBodies {
         return body_core_nodes.empty() ? nodes(r)
                                        : step_nodes_of(nodes(r), body_core_nodes[static_cast<std::size_t>(body[r])]);
     }
-    /// Rows of ImplicitNodeTable.
+    /// Rows of the body in ImplicitNodeTable; empty for a rigid body.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
     /// True if row `r` is the frame of an implicit body that an attachment holds. All momentum of such a body is in the
     /// velocities of its nodes.
@@ -75,10 +75,10 @@ struct RigidBodies {
 /// Deformation of implicit bodies at the end of the step, in the frames of their meshes, by row of ImplicitNodeTable.
 struct ElasticMotion {
     std::span<const Vec3> displacement, velocity;  // [m], [m/s]
-    // Columns of RigidBodyTable, used only for implicit bodies:
+    // Columns of RigidBodyTable, used only for implicit bodies. `large`: 1 if the deformation is large.
     std::span<const std::uint8_t> large;
     std::span<const Vec3> moments;
-    std::span<const Mat3> axes, rotation;  // `rotation`: of the new principal axes, before the turn of this step
+    std::span<const Mat3> axes, rotation;  // `rotation`: new principal frame to world, start of step
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
@@ -124,9 +124,10 @@ struct RigidKicks {
 /// Computes the impulse and moment of gravity and loads on each body, and the node velocities with these impulses,
 /// which are the start values for contacts. Parallel over bodies. Returns false if there is no rigid body (skipped).
 ///
-/// Gravity and loads act for the time `kick`, but on the frames of implicit bodies for the complete step `h`. Sleeping
-/// bodies get no impulse. A held rigid body gets the impulse that moves it with its attachment; the velocities of its
-/// nodes are already set. The frame of a held implicit body has no momentum and no degrees of freedom.
+/// Gravity and loads act for the force interval `kick`, but on the frames of implicit bodies for the complete step `h`.
+/// Sleeping bodies get no impulse. A held rigid body gets the impulse that moves it with its attachment; drive_nodes
+/// has already set the velocities of its nodes. The frame of a held implicit body has no momentum and no degrees of
+/// freedom.
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 
@@ -192,8 +193,8 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
                        std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
 
-/// Moves the nodes of round bodies that are only drawn to the present poses of these bodies. With `resting` also moves
-/// such nodes of sleeping bodies. Parallel over bodies.
+/// Moves those nodes of round bodies that only serve for drawing: they follow the present poses of the bodies. Nodes of
+/// sleeping bodies move only with `resting`. Parallel over bodies.
 void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
                        std::span<Vec3> velocity);
 

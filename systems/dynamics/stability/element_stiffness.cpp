@@ -21,8 +21,8 @@ struct Matrix9 {
     T a[9][9];
 };
 
-/// Selects the part number `part` of the eight lanes, as many lanes as a register contains. Each entry of a 9x9 matrix
-/// is then one register.
+/// Those of the eight lanes that belong to register number `part`. Eight lanes fill `kernel_parts` registers. A 9x9
+/// matrix is built for one register at a time.
 [[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
     Lanes<Real, element_lanes> all;
     store(x, all);
@@ -139,8 +139,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Adds the mass b (R:X)^2 of an element, where R is a rotation and X = Y L^T the displacement gradient. Without it the
-/// mass of Y is |Y|^2. With s = R L as a vector of nine entries, R:X = s.Y. So A becomes D A D, where
+/// Adds the term b (R:X)^2 to the mass form of an element, where R is a rotation and X = Y L^T the displacement
+/// gradient. Without this term the mass form of Y is |Y|^2. With s = R L as a vector of nine entries, R:X = s.Y. So A
+/// becomes D A D, where
 ///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
@@ -160,8 +161,8 @@ void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>
         for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
 }
 
-/// For each lane of this part: true if all eigenvalues of volume * A are below `limit`. The test is whether limit I -
-/// volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding errors. It ends early if no lane
+/// For each lane of this register: true if all eigenvalues of volume * A are below `limit`. The test is whether limit I
+/// - volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding errors. It ends early if no lane
 /// passes.
 template <class T>
 auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {

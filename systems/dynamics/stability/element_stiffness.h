@@ -14,13 +14,12 @@ namespace skerry {
 struct ViscousPart {
     ViscousModuli moduli{};
     ViscousStretch<Real8> stretch{};
-    // Number of springs, and fraction of the spring of the bulk viscosity, that count in a step. A spring that relaxes
-    // in the step counts as a fraction.
+    // `strain_share`: number of Maxwell springs that count; one that relaxes within the step counts as a fraction.
+    // `volume_share`: this fraction for the one spring of the bulk viscosity.
     Real8 strain_share = Real8{} + Real{maxwell_count}, volume_share = Real8{} + 1.0;
 };
 
-/// Mass b (R:X)^2 of an element in addition to its other mass (frame_masses.h). R is `rotation`, X the gradient of
-/// displacements.
+/// Term b (R:X)^2 of the mass form of an element (frame_masses.h). R is `rotation`, X the gradient of displacements.
 struct FramePart {
     Mat3 rotation = Mat3::Identity();
     Real8 b{};  // [kg m^2]
@@ -40,7 +39,7 @@ enum class Sharpness {
 ///
 /// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M is the diagonal matrix of
 /// the mass shares m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners; or M is the mass form
-/// of `Q` (mass_forms.h). With `frame` the elements have that additional mass.
+/// of `Q` (mass_forms.h). With `frame` the mass form has the additional term of FramePart.
 ///
 /// If the material law has a corotational frame, `q` is the initial guess of the frame and receives the frame found. If
 /// all eight lanes are below `enough` [1/s^2], all lanes get `enough` instead, in a tenth of the time.

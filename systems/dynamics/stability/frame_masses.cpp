@@ -3,8 +3,8 @@
 // The stiffness K_e of an element is computed with H X = 2 mu X + lambda tr(X) I, an upper bound on dP/dF of the
 // material law at rest, with the unit matrix I. Unlike the law, this H resists rotations. The highest modes of a mesh
 // rotate little, so the highest frequency with H is within a few per cent of the true one. Each element gets the mass
-// K_e / c. These masses add up to no more than the masses of the nodes if c is above the highest eigenvalue of the
-// complete body.
+// K_e / c, with one number c for the body. These masses add up to no more than the mass M of the nodes if c is above
+// the highest eigenvalue of M^-1/2 K M^-1/2, where K is the sum of all K_e.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>
@@ -136,7 +136,7 @@ private:
     };
 
     /// Adds the matrix entries of one node to its three rows, which are zero so far. `place`: number of the node along
-    /// the body. Each row begins at its diagonal.
+    /// the body. Each row begins at its diagonal, `stride` numbers after the previous row.
     void add(std::size_t place, Real* rows, std::size_t stride) const {
         for (const ElementCorner& corner : corners_[place]) {
             const BlockNodes nodes = elements_.nodes_of(corner.block);
@@ -218,8 +218,7 @@ private:
         });
     }
 
-    /// Data for products of the matrix with a vector, one element after the other. Only elements with a mass share are
-    /// included.
+    /// Data for products of the matrix with a vector: a list of the elements that have a mass share.
     struct Factors {
         struct Element {
             Real shear, volumetric;
@@ -291,7 +290,7 @@ private:
     std::vector<std::size_t> place_;
     std::size_t nodes_ = 0, width_ = 0;
     std::vector<Weights> weights_;   // by block
-    Ragged<ElementCorner> corners_;  // by place
+    Ragged<ElementCorner> corners_;  // by number of the node along the body
 };
 
 }  // namespace

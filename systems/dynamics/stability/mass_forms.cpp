@@ -64,16 +64,16 @@ Real sum_of(const Real4& x) {
 constexpr Real longer_by_forms = 1.5;
 
 // Number of blocks of elements above which a body counts as large. Such a body is cut into so many groups that the
-// modes between the groups determine the step. More than one round of iteration then gains little: with 16 rounds, the
-// steps of three meshes of 280,000 to 310,000 tetrahedra were as long, 4 % longer and 2 % shorter than with one.
+// modes between the groups determine the step. More than one round of iteration then gains little: with 16 rounds
+// instead of one, the steps of three meshes of 280,000 to 310,000 tetrahedra changed by 0 %, 4 % and -2 %.
 constexpr std::size_t blocks_of_large = 30'000;
 
 /// Group of elements. The group's share of the mass of its nodes is divided among the elements of this group alone.
 struct ElementGroup {
     Range blocks;
-    // Nodes in the order of their positions along the group; numbers begin at the first node of the body.
+    // Nodes sorted along the longest side of the group, counted from the first node of the body.
     std::vector<Index> node{};
-    std::size_t width = 0;         // bandwidth: greatest difference of the numbers of two nodes of an element, plus 1
+    std::size_t width = 0;         // bandwidth: 1 + greatest difference of ranks in `node` within an element
     std::vector<Real> mass{};      // share of the group in the mass of each of its nodes [kg]
     std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T
     std::vector<Real4> vector{};   // by node: values of four approximate highest modes
@@ -104,13 +104,14 @@ public:
         place_.resize(count, no_index);
     }
 
-    /// Chooses the matrices Z, stored in form_ until Q is known, and computes the weights V W from Z.
+    /// Chooses the matrices Z, stored in form_ until Q is known, and computes the weights V W from Z (symbols: see the
+    /// head of the file).
     void choose() {
         const bool large = form_.size() > blocks_of_large;
         const int rounds = large ? 1 : 16, products = large ? 1 : 5;
         constexpr Real noise_part = 0.3;  // noise added to the vectors in each round, to find missing modes
-        // Search for the matrix Z of each element. It starts as a multiple of the identity, and the final Z is the mean
-        // of all rounds.
+        // Search for the matrix Z of each element. It starts as a multiple of the identity. The final Z is the mean of
+        // this start and of the results of all rounds.
         for (ElementForm& of_block : form_)
             for (std::size_t i = 0; i < 6; ++i)
                 for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;
@@ -135,8 +136,8 @@ public:
         weigh();
     }
 
-    /// Upper bound on the squared highest frequency with the stiffness sum_e G V W G^T [1/s^2]. The stiffness divided
-    /// by this bound is at most the mass of the nodes.
+    /// Upper bound on the squared highest frequency with the stiffness sum_e G V W G^T (symbols: see the head of the
+    /// file) [1/s^2]. The stiffness divided by this bound is at most the mass of the nodes.
     Real bound() {
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
@@ -185,7 +186,8 @@ private:
                 if (elements_.volume[b][l] > 0) visit(b, l, elements_.nodes_of(b));
     }
 
-    /// Computes the weights V W = V (2 mu 1 + lambda tr(Z) Z^-1); zero for implicit elements.
+    /// Computes the weights V W = V (2 mu I + lambda tr(Z) Z^-1), with the symbols of the head of the file; zero for
+    /// implicit elements.
     void weigh() {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const auto [shear, volumetric] = moduli_.of(first_block() + i);
@@ -333,8 +335,8 @@ private:
         });
         for (const Index n : group.node) group.diagonal.push_back(sum[static_cast<std::size_t>(n)]);
     }
-    /// Rayleigh quotient of the iterated vectors of a group, after some products with the matrix of the group. It is a
-    /// lower bound on the highest eigenvalue of the group [1/s^2].
+    /// Greatest Rayleigh quotient of the four iterated vectors of a group, after `products` products with its matrix.
+    /// It is a lower bound on the highest eigenvalue of the group [1/s^2].
     Real highest_of(ElementGroup& group, int products) {
         Real highest = 0;
         for (int p = 0; p < products; ++p) {
@@ -359,7 +361,8 @@ private:
         return highest;
     }
 
-    /// Data of the matrix M^-1/2 (sum_e G V W G^T) M^-1/2 of a group.
+    /// Data of the matrix M^-1/2 (sum_e G V W G^T) M^-1/2 of a group, with its mass matrix M and the symbols of the
+    /// head of the file.
     struct GroupMatrix {
         std::vector<Real> scale;        // inverse square root of the mass, by node along the group [1/sqrt(kg)]
         Ragged<ElementCorner> corners;  // corners of elements at each node along the group
@@ -403,9 +406,9 @@ private:
     std::span<const Real> mass_;           // masses from the first node of the body on [kg]
     std::span<ElementForm> form_;          // Z, then Q
     std::vector<ElementForm> weight_;      // weights V W [Pa m^3]
-    std::vector<Real4> vector_, product_;  // by node
+    std::vector<Real4> vector_, product_;  // by node: four iterated vectors; their products with the stiffness
     RestModuli moduli_;
-    std::vector<Index> place_;  // number of each node in the order along its group
+    std::vector<Index> place_;  // rank of each node in ElementGroup::node, or no_index
     BandDecomposition decomposition_;
 };
 

@@ -12,9 +12,9 @@ namespace skerry {
 /// about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_group = 4e8;
 
-/// Diagonal entries of Q for an implicit element, which belongs to a cluster. With so small a Q the bound of the
-/// element limits no step. The element takes no part in the division of the masses. The entries are not 0, because 0
-/// means that a block has no mass forms [1/(kg m^2)].
+/// Diagonal entries of Q for an implicit element, which belongs to a cluster [1/(kg m^2)]. With so small a Q the bound
+/// of the element limits no step. The element takes no part in the division of the masses. The entries are not 0,
+/// because 0 means that a block has no mass forms.
 inline constexpr Real form_of_implicit = 1e-100;
 
 /// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). Sequential, about 10 us

@@ -108,7 +108,7 @@ bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
     const Real rounding = 1e-10 * limit;
     const std::size_t groups = matrix.size / matrix.group;
     // The window stores complete groups of rows, so that no group is split at its end. Each row has margins at both
-    // ends, because registers are loaded at aligned positions: up to a register length before the diagonal, and up to
+    // ends, because registers are loaded from aligned addresses: up to a register length before the diagonal, and up to
     // `pivots - 1` numbers and a register length after the band. The numbers in the margins are computed but not used.
     rows_ = ((matrix.width + 2 * pivots) / matrix.group + 2) * matrix.group;
     stride_ = (matrix.width + pivots + 3 * row_step) / row_step * row_step;

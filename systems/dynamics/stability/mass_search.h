@@ -55,9 +55,8 @@ struct ElementCorner {
     Index corner;
 };
 
-/// Lists the element corners at each node, in the order of elements. `places` is the number of nodes.
-/// for_each_corner(visit) must call visit(place, corner) for all corners, in the order of elements, with the number
-/// `place` of the node.
+/// Lists the element corners at each node, in the order of elements. `places`: number of nodes. for_each_corner(visit)
+/// must call visit(place, corner) for all corners, in the order of elements; `place` is the number of the node.
 inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
     Ragged<ElementCorner> corners;
     corners.offset.resize(places + 1);
@@ -111,8 +110,8 @@ private:
     /// loads the pivot rows only once.
     void take(const Pivots& pivots_of, std::size_t r);
     void take_from_two(const Pivots& pivots_of, std::size_t r);
-    /// Pointer to the diagonal entry of row r. The entries of a column have the same position within a register in all
-    /// rows.
+    /// Pointer to the diagonal entry of row r. The entries of a column lie in the same lane of a register in all rows,
+    /// so that rows are subtracted register by register.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
     std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and number of entries per row

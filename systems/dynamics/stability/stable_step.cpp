@@ -32,8 +32,8 @@ Index sums_of(Range blocks) {
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
 /// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one *wave* of blocks.
-/// Waves contain 1, 1, 2, 4, 8... blocks. Most blocks stay below the greatest bound of the waves before, which a fast
-/// test shows.
+/// Waves contain 1, 1, 2, 4, 8... blocks. A fast test shows that most blocks of a wave stay below the greatest bound of
+/// the earlier waves.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;

@@ -66,7 +66,8 @@ struct ElementBounds {
 /// (docs/methods/stable_step.md 2.1). In each of four rounds the share s of an element becomes s omega / omega_max,
 /// where omega is the frequency of the element with its present mass, and omega_max the highest omega of all elements.
 /// The bound is rigorous with any positive shares, so the shares found for the rest shape serve for every shape.
-/// `mass_share`: shares of the blocks, set by start_mass_shares() before. Sequential, for new bodies.
+/// `mass_share`: shares of the blocks, to which start_mass_shares() must have given their first values. Sequential, for
+/// new bodies.
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 

@@ -30,8 +30,8 @@ Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const L
 /// - Inversion barriers (guards): 0, because they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
-/// Adds the stiffness of each element of a block to stiffness_sum at the nodes of the element, for lanes with
-/// counts(lane) true.
+/// Adds the stiffness of each element of a block to stiffness_sum at the nodes of the element, except in lanes for
+/// which counts(lane) is false.
 template <class Counts>
 void add_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                    std::span<Real> stiffness_sum, Counts&& counts) {

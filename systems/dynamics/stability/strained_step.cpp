@@ -1,9 +1,9 @@
 // Bounds the stiffness K of a strained body. Element e has the mass form M_e, the stiffness K_e and the bound w_e on
 // its omega^2. Since K_e <= w_e M_e, any number `base` satisfies
 //     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E .
-// M is the mass of the nodes, and E the sum of the excess (w_e - base)^+ M_e. E is below M times max_i ( sum_j |E_ij|
-// d_j )/( m_i d_i ) for any positive weights d_i of the nodes i with masses m_i (Collatz 1942). Entries of E are
-// scalars, since mass forms are the same for x, y and z.
+// (x)^+ is x if positive, else 0. M is the mass of the nodes, and E the sum of the excess (w_e - base)^+ M_e. E is
+// below M times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive weights d_i of the nodes i with masses m_i
+// (Collatz 1942). Entries of E are scalars, since mass forms are the same for x, y and z.
 #include "systems/dynamics/stability/strained_step.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr Real above_asked = 1.1;
 // Number of rounds of the iteration for the node weights d. After many rounds the ratio of the row sum to the mass
 // times d would be equal at all nodes.
 constexpr int rounds = 4;
-// Number of factors of ten between the base and the largest omega^2 of an element for which a bound is searched.
+// Number of factors of ten above the base within which an element gets a finite bound of omega^2.
 constexpr int ranges = 3;
 
 /// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight

@@ -25,7 +25,7 @@ struct WatchInputs {
     }
 };
 
-/// Stable-step check of one body, which this time step continues, and the progress of the check.
+/// Stable-step check of one body that this time step continues: how far it gets, and its intermediate result.
 struct WatchPart {
     Index body = no_index;
     std::uint64_t until = 0;  // number of pieces done by the end of the step
@@ -33,8 +33,8 @@ struct WatchPart {
     StepEvaluation evaluation;
 };
 
-/// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape is stored. A
-/// second call for the same step does nothing. `parts` is work memory that is reused between steps.
+/// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape `watch`
+/// stores. A second call for the same step does nothing. `parts` is work memory that is reused between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry

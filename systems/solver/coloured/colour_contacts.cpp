@@ -123,7 +123,7 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
 }
 
 /// Computes the phases and blocks of the coloured order. In bin_begin it replaces the contact count of a bin by the
-/// position of the first contact of the bin in the coloured order. For bins whose contacts go to the tail it writes
+/// index of the first contact of the bin in the coloured order. For bins whose contacts go to the tail it writes
 /// no_index.
 class Layout {
 public:
@@ -175,7 +175,7 @@ public:
         }
     }
 
-    /// Adds the phase of the tail. Returns the position of the tail's first contact in the order.
+    /// Adds the phase of the tail. Returns the index of the tail's first contact in the order.
     Index add_tail() {
         leave(memory_.bin_begin[tail_bin]);
         const Index begin = place_;
@@ -220,9 +220,9 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Writes the contacts to their positions in the coloured order. Contacts of one colour are sorted by node. A worker
-/// prefers the same fraction of the blocks in every phase (Team), so it meets mostly the same nodes in all colours and
-/// finds them in its cache. Contacts of hubs and of the tail stay in ascending order.
+/// Writes the coloured order. Contacts of one colour are sorted by node. A worker prefers the same fraction of the
+/// blocks in every phase (Team), so it meets mostly the same nodes in all colours and finds them in its cache. Contacts
+/// of hubs and of the tail stay in ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

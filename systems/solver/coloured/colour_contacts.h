@@ -18,12 +18,12 @@ using ContactNodes = std::array<Index, 4>;
 /// concurrently. Phases are solved one after the other. The result is bitwise that of solving the contacts one by one
 /// in this order.
 struct ColouredOrder {
-    Column<Index> contact;       // for each position in the coloured order: number of the contact in the region
-    Column<Index> block_offset;  // position of the first contact of each block; the last entry is the contact count
+    Column<Index> contact;       // the coloured order: numbers of the contacts in the region
+    Column<Index> block_offset;  // index in `contact` of each block's first contact; last entry: contact count
     Column<Index> phase_offset;  // index of the first block of each phase; the last entry is the block count
     Index colour_count = 0;      // number of phases in which no two contacts share a node; these phases come first
-    Index hub_phase_count = 0;   // number of phases made of hub blocks; these phases follow the phases of the colours
-    Index tail_size = 0;         // number of contacts in the last phase, which is a single block; 0 if there is no tail
+    Index hub_phase_count = 0;   // number of phases for contacts of hubs (see hub_degree); they follow the colours
+    Index tail_size = 0;         // number of contacts in the tail, the last phase, which is one block; 0 without tail
 };
 
 struct ColouringMemory {
@@ -31,7 +31,7 @@ struct ColouringMemory {
     Column<Index> degree;                // by node: number of contacts at the node
     Column<Index> hub_of_node;           // by node: index of the node among the hubs, or no_index
     Column<Index> bin;                   // by contact: colour, or 64 for the tail, or 65 + index of a hub
-    Column<Index> bin_begin;  // by bin: number of contacts, later the position of the next contact to be placed
+    Column<Index> bin_begin;  // by bin: number of contacts, later the index in `contact` for its next contact
     // Lists of the contacts of each hub: start of each list, and all lists one after the other.
     Column<Index> hub_offset, hub_item;
     Column<Index> hub_order, hub_colour;

@@ -13,7 +13,7 @@ namespace skerry {
 struct ColouredRegion {
     Column<ContactNodes> moving;  // by contact: moving nodes as rows of NodeTable
     Column<ContactNodes> local;   // by contact: moving nodes as indices in `node`
-    Column<Index> node;           // rows of NodeTable
+    Column<Index> node;           // moving nodes of all contacts, each listed once: rows of NodeTable
     ColouredOrder order;
     ColouringMemory colouring;
     Column<BlockSum> partial;  // for each block of the coloured order: partial sums over the contacts of the block

@@ -64,7 +64,7 @@ void BlockFactor::eliminate_pattern(Index next) {
 }
 
 bool BlockFactor::analyse() {
-    constexpr Real most_numbers = 32 << 20;  // numbers of 8 bytes: 256 MiB
+    constexpr Real most_numbers = 32 << 20;  // limit on the entries of the factor: 256 MiB in numbers of 8 bytes
     const std::size_t count = size_.size();
     beside_.assign(count, 0);
     for (Index g = 0; g < part_count(); ++g)

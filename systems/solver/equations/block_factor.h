@@ -57,9 +57,8 @@ private:
     // For each pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
     Column<std::uint8_t> coupled_;
     Column<Index> beside_;        // by part: total size of the coupled parts that are not yet eliminated
-    Column<Index> order_, rank_;  // order_: parts in elimination order; rank_: by part, its position in order_
-    // For each position in the elimination order: parts that are eliminated later and are coupled to the part at this
-    // position.
+    Column<Index> order_, rank_;  // order_: parts in elimination order; rank_: by part, its index in order_
+    // For each entry k of order_: the parts that are coupled to part order_[k] and eliminated after it.
     Ragged<Index> later_;
     Column<std::size_t> first_;   // by pair of parts: index of the block's first entry in `number_`
     Column<Index> stride_below_;  // by part: column stride of the part's blocks below the diagonal

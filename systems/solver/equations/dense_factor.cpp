@@ -262,7 +262,7 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
     // Whether triangle inverses are used depends on the number of all columns, not on the lengths of the runs, so that
-    // the bits of the result do not depend on the position of zero columns.
+    // the bits of the result do not depend on which columns are zero.
     const bool many = b.columns >= many_columns;
     for_each_run_of_columns(
         b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });

@@ -45,7 +45,8 @@ struct RigidInputs {
         return nodes.round_radius[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
 
-    /// Number of core nodes of the body at row `r` of RigidBodyTable; 0 if no body has a core.
+    /// Number of core nodes (on the centre or axis of a round body) of the body at row `r` of RigidBodyTable; 0 if it
+    /// has none.
     Index core_of(Index r) const {
         return core_nodes.empty() ? 0 : core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
@@ -184,7 +185,7 @@ struct RegionInputs {
 struct RegionOutputs {
     std::span<Vec3> impulse;        // by contact: warm start as input, solution as output [N s]
     std::span<Vec3> velocity_next;  // by node: predicted velocity as input, solution as output [m/s]
-    std::span<Vec3> push_out;       // pseudo velocity by node, except nodes of rigid bodies [m/s]
+    std::span<Vec3> push_out;       // by node, except of rigid bodies: pseudo velocity of the split impulse [m/s]
     // Contact impulses, moments and pseudo velocities by row of RigidBodyTable, zero before the solve.
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
     std::span<Vec3> deforming_impulse{};     // by row of ImplicitNodeTable, zero before the solve [N s]

@@ -11,19 +11,20 @@ struct SolverSettings {
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;  // relative error e_nat at which sweeps end (docs/methods/errors.md 2)
-    // Regions whose bodies are all still use the smaller of this tolerance and `tolerance` (docs/methods/errors.md 7).
+    // Tolerance for regions whose bodies did not move in the last step, if it is smaller than `tolerance`
+    // (docs/methods/errors.md 7).
     Real still_tolerance = 1;
     Index max_iterations = 200;  // upper limit on the number of sweeps per region
-    // If true, each region does exactly max_iterations sweeps. With method pgs, results then do not depend on the
-    // division into regions, bit by bit.
+    // If true, each region does exactly max_iterations sweeps. With method pgs, results are then bitwise independent of
+    // the division into regions.
     bool fixed_iterations = false;
     Real relaxation = 1.0;          // over-relaxation factor of the sweeps
     Real restitution_speed = 0.05;  // impacts slower than this do not bounce (docs/methods/contact.md 3.2) [m/s]
     // beta: fraction of a negative gap that the split impulse corrects per step (docs/methods/contact.md 3.4).
     Real recovery = 0.15;
     Real recovery_speed = 0.5;  // upper bound of the speed at which the split impulse corrects a gap [m/s]
-    // Regions with at least this many contacts are solved one after the other, each by a team of workers in its
-    // coloured order.
+    // Regions with at least this many contacts are solved one after the other, each by a team of workers in the
+    // coloured order of its contacts (colour_contacts.h).
     Index parallel_region_contacts = 2000;
     // Switches of shortcuts (docs/methods/skipping.md 1, 2). Switching one off changes results only within the
     // tolerance.

@@ -1,5 +1,5 @@
 // Law of a cable that runs through points of bodies: prescribed length or tension, and friction at the points
-// (docs/methods/cables.md 2). Law of a tie of the mean of many points (docs/methods/ties.md).
+// (docs/methods/cables.md 2). Also the law of a tie that holds the mean of many points (docs/methods/ties.md).
 #pragma once
 
 #include <span>
@@ -55,7 +55,8 @@ private:
     Real entry(std::size_t row, std::size_t column) const { return mobility[row * segments() + column]; }
     /// Rate of length of the cable from segment `s` on [m/s].
     Real far_rate(std::size_t s) const;
-    /// Impulse with which segment `s` satisfies the law, for the mobility `of` [N s].
+    /// Impulse with which segment `s` satisfies the law if far_rate(s) decreases by `of` [1/kg] per unit of this
+    /// impulse [N s].
     Real answer(std::size_t s, Real of) const;
     Real step(std::size_t s) const;
     /// Change of the impulse of a tie that makes its rate zero [N s].

@@ -36,7 +36,7 @@ struct FrictionLimits {
     bool ties() const { return slide == infinity; }
 };
 
-/// Impulse of a row that is an equation, where `z` is the impulse that would stop all directions.
+/// Impulse of a tie, where `z` is the impulse that would stop the velocity in all directions.
 template <class V>
 inline V project_tie(const V& z, const V& normal, FrictionLimits mu) {
     return mu.stick == 0 ? V(normal.dot(z) * normal) : z;
@@ -108,7 +108,7 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
     if (mu.ties()) return project_tie(residual, normal, mu);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
-    // Relative distance from the cone surface below which a projected impulse counts as on the surface.
+    // Relative distance from the cone surface below which a projected impulse counts as lying on it.
     constexpr Real rounding = 1e-9;
     const Real limit = mu.slide * along * (1 - rounding);
     if (friction != Friction::pyramid) {

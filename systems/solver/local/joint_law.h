@@ -65,7 +65,7 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     return {motor, spring + (drive - motor)};
 }
 
-/// Three joint rows with their diagonal block of W, in the frame of the joint.
+/// Three joint rows with their diagonal block of the Delassus operator W, in the frame of the joint.
 struct JointLaw {
     bool axis_free;  // true: the third row is a free axis; false: the third row is locked
     AxisBounds axis{};

@@ -6,9 +6,9 @@
 namespace skerry {
 namespace {
 
-/// Contact velocity at the start of the step, and predicted velocity after the kick (the velocity change by forces).
-/// Elastic forces also kick the deformation of implicit bodies. `now` excludes this part, because contact impulses
-/// cancel it in a body at rest [m/s]
+/// `before`: contact velocity at the start of the step. `now`: predicted contact velocity after the forces of the step
+/// have acted, but without the velocity change of the deformation of implicit bodies, because contact impulses cancel
+/// this change in a body at rest [m/s].
 struct AroundKick {
     Vec3 before, now;
 };

@@ -10,8 +10,9 @@
 
 namespace skerry {
 
-/// Normal bias b_n of docs/methods/contact.md 3.1. It allows the gap to close within the step, and makes an impact
-/// rebound with the coefficient of restitution. Negative gaps are corrected by the split impulse (push_contact.h) [m/s]
+/// Normal bias b_n of docs/methods/contact.md 3.1 [m/s]. It allows the gap to close within the step, and makes an
+/// impact rebound with the coefficient of restitution. Negative gaps are corrected by the split impulse
+/// (push_contact.h).
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                   const SolverSettings& settings, Real h);
 
@@ -22,9 +23,9 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 /// direction, because such friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
-/// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` holds the predicted
-/// node velocities. A node moves with a rigid body if `elsewhere(node, weight)` returns true; such a node is omitted
-/// from the LumpedContact.
+/// Loads contact `row`. `local(node)` returns the velocity row of a moving node in the region. `velocity_next` holds
+/// the predicted node velocities. A node moves with a rigid body if `elsewhere(node, weight)` returns true; such a node
+/// is omitted from the LumpedContact.
 template <class Local, class Elsewhere>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                            const SolverSettings& settings, Real h, Local&& local, Elsewhere&& elsewhere) {

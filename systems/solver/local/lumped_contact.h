@@ -1,6 +1,6 @@
-// One contact between nodes with lumped masses. Its diagonal block of W is a scalar times the identity
-// (docs/methods/contact.md 2.1). A contact step gathers node velocities, projects the impulse, and scatters its change
-// to the nodes.
+// One contact between nodes with lumped masses. Its diagonal block of the Delassus operator W is a scalar times the
+// identity (docs/methods/contact.md 2.1). A contact step gathers node velocities, projects the impulse, and scatters
+// its change to the nodes.
 #pragma once
 
 #include <array>

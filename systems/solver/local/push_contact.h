@@ -20,8 +20,8 @@ inline Real push_slop(Real gravity, Real h) {
 }
 
 /// Speed at which a penetration `depth` is corrected [m/s] (docs/methods/contact.md 3.4). One of its upper bounds
-/// limits the kinetic energy m v^2 / 2 to half a thousandth of the work of lifting the mass m by `depth`. Without
-/// gravity it would be zero, so it is at least a hundredth of recovery_speed.
+/// limits the kinetic energy m v^2 / 2 to half a thousandth of the work of lifting the mass m by `depth`. This bound
+/// would be zero without gravity, so it is at least a hundredth of recovery_speed.
 inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
     // Bounds of the speed, as fractions of sqrt(gravity depth) and of recovery_speed.
     constexpr Real of_fall = 0.03, of_limit = 0.01;
@@ -38,8 +38,8 @@ inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSet
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Bias of a contact whose gap shrinks by rotation in addition to its contact velocity [m/s]. `loss` <= 0: rate of
-/// change of the gap by this rotation. The push compensates the part of the loss that the gap cannot absorb.
+/// Bias of a contact whose gap changes by its contact velocity and, in addition, shrinks by a rotation [m/s]. `loss` <=
+/// 0: rate of change of the gap by this rotation. The push compensates the part of the loss that the gap cannot absorb.
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;

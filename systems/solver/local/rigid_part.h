@@ -1,5 +1,5 @@
-// Part of a contact that belongs to rigid bodies. The diagonal block of W of such a contact is a full 3x3 matrix
-// (docs/methods/rigid_bodies.md 3).
+// Part of a contact that belongs to rigid bodies. The diagonal block of the Delassus operator W of such a contact is a
+// full 3x3 matrix (docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include <array>

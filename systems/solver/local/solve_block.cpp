@@ -74,8 +74,8 @@ Real find_slip_safely(SlipCurve& curve) {
     return s;
 }
 
-/// Newton's method, started from the last solution; one or two steps are usual. Any root with r_n > 0 is a solution. If
-/// Newton's method does not converge quickly, find_slip_safely takes over.
+/// Finds s by Newton's method, started from the last solution; one or two steps are usual. Any root with r_n > 0 is a
+/// solution. If Newton's method does not converge quickly, find_slip_safely takes over.
 Real find_slip(SlipCurve& curve, Real start) {
     Real s = start;
     constexpr int fast_limit = 6;  // limit of Newton iterations, three times the usual number

@@ -1,5 +1,5 @@
-// Exact Coulomb solution of one contact with a general symmetric positive 3x3 block (docs/methods/friction.md 3).
-// Vectors are in the contact frame: normal, tangent 1, tangent 2.
+// Exact Coulomb solution of one contact with a general symmetric positive semidefinite 3x3 block
+// (docs/methods/friction.md 3). Vectors are in the contact frame: normal, tangent 1, tangent 2.
 #pragma once
 
 #include "components/types.h"

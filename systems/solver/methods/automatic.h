@@ -23,9 +23,9 @@ inline Real newton_step_cost(Index contacts) {
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators with memory for dense Newton steps and a known number of couplings. Operators that have neither these nor
-/// their own Newton steps use accelerated sweeps only (run_method.h): in the engine, the warm start of the next time
-/// step reduces the remaining error at less cost than a factorisation.
+/// Operators with memory for dense Newton steps and a known number of couplings. Operators without such memory and
+/// without their own Newton steps use accelerated sweeps only (run_method.h): in the engine, the warm start of the next
+/// time step reduces the remaining error at less cost than a factorisation.
 template <class Op>
 concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;

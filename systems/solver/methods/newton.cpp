@@ -156,7 +156,7 @@ private:
     /// Line search: evaluates the step lengths 1, 1/2, 1/4, ... and takes the first that lowers the merit enough. If
     /// there is none, takes the length with the smallest merit.
     void search_along_change() {
-        constexpr int halvings = 6;   // docs/decisions/0004
+        constexpr int halvings = 6;   // number of step lengths to evaluate (docs/decisions/0004)
         constexpr Real enough = 0.9;  // the merit function must fall below this fraction of its start value
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();

@@ -9,8 +9,9 @@
 
 namespace skerry {
 
-/// Runs only the conjugate gradient phase, from the operator's present impulse. It does at most as many iterations as
-/// there are scalar rows. The final impulse is the last one if it converged, otherwise the best one.
+/// Runs only the conjugate gradient phase, from the operator's present impulse. Unless the number of iterations is
+/// fixed, it does at most as many as there are scalar rows. The final impulse is the last one if it converged,
+/// otherwise the best one.
 SolveResult solve_pcg(AnyOperator& op, const SolveLimits& limits, ConjugateBeta formula);
 
 /// The solver of Lazarevych et al. (2010): conjugate gradients, then projected Gauss-Seidel from the best iterate, with

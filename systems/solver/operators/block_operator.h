@@ -40,7 +40,7 @@ struct BlockMemory {
 
     std::vector<Contact> contact;
     std::vector<Index> offset;    // index of the first off-diagonal block of each contact; contact count + 1 entries
-    std::vector<Index> neighbor;  // index of contact j of each off-diagonal block W_ij, in the order of the sweep
+    std::vector<Index> neighbor;  // for each off-diagonal block W_ij: index of contact j in the sweep order
     std::vector<Columns> block;   // off-diagonal blocks W_ij
     std::vector<Vec4> impulse;    // [N s]
     std::array<std::vector<Vec4>, workspace_limit> workspace;

@@ -73,9 +73,9 @@ Index BodyOperator::name_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
 }
 
-/// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or the nodes of a
-/// deformable body whose first contact is with the same other body. Most of these nodes couple only within their own
-/// body and with this other body, which keeps the matrix sparse.
+/// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or a group of nodes of
+/// one deformable body: those whose first listed contact is with one certain other body. Most of these nodes couple
+/// only within their own body and with that body, which keeps the matrix sparse.
 void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();

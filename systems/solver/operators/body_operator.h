@@ -24,9 +24,9 @@ namespace skerry {
 /// of W_ii.
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
-    Index contacts = 0;                   // number of contacts without joint rows and points of cables
-    std::span<const JointLaw> joint;      // by joint row; joint row k has the contact index contacts + k
-    std::span<const Index> cable;         // indices in cable_law; the points of these cables follow the joint rows
+    Index contacts = 0;                   // number of contacts proper; joint blocks and cable points follow them
+    std::span<const JointLaw> joint;      // by joint block (three rows); block k has the contact index contacts + k
+    std::span<const Index> cable;         // indices in cable_law; the points of these cables follow the joint blocks
     std::span<const CableLaw> cable_law;  // by solved cable of the step
     std::span<const Vec4> free_velocity;  // by velocity row: velocity without impulses [m/s, rad/s]
 };
@@ -105,7 +105,7 @@ public:
         return mobility * change * change;
     }
 
-    /// Returns the law of a joint row, or null for a contact or a point of a cable.
+    /// Returns the law of a joint block, or null for a contact or a point of a cable.
     const JointLaw* joint(Index i) const {
         return i < memory_.contacts || i >= swept() ? nullptr
                                                     : &memory_.joint[static_cast<std::size_t>(i - memory_.contacts)];
@@ -175,11 +175,11 @@ private:
     /// Solves contact i and applies the change of its impulse. Returns change . W_ii change, where W_ii is the diagonal
     /// block of contact i [J]
     Real step(Index i, Real relaxation);
-    /// Number of contacts and joint rows. The points of cables follow.
+    /// Number of contacts and joint blocks. The points of cables have the indices after them.
     Index swept() const { return memory_.contacts + static_cast<Index>(memory_.joint.size()); }
-    /// Calls `of` for all contacts and joint rows in their order.
+    /// Calls `of` for all contacts and joint blocks in ascending order.
     void for_each_in_sweep(auto&& of);
-    /// Solves the cables one after the other. Adds the changes of their impulses to `sum`.
+    /// Solves the cables one after the other. Adds their part of the change in this sweep to `sum`.
     void sweep_cables(Real relaxation, SweepChange& sum);
     /// Computes the present impulses and rates of a cable from the region's impulses and velocities, and stores them in
     /// its law.

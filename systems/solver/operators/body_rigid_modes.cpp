@@ -1,5 +1,6 @@
 // Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies. Deformations
-// are updated once per round (docs/methods/region_solver.md 5.10).
+// are updated once per round, which is a sequence of Newton steps with fixed start impulses
+// (docs/methods/region_solver.md 5.10).
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -66,7 +66,7 @@ concept ContactOperator = SweptOperator<Op> &&
     op.refresh();                                              // recomputes the stored velocities from the impulse
     // Slot 0: best iterate; slot 1: previous impulse of accelerated sweeps; other slots: free for the method.
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;  // one sweep; returns the size of its change
+    { op.sweep(number) } -> std::convertible_to<Real>;  // one sweep; returns SweepChangeOf::size
     op.residual(out);      // writes -u of each contact; Lazarevych et al. (2010) call it b - A lambda
     op.multiply(in, out);  // out = W in
     { constant.project(i, vector) } -> std::convertible_to<Vec4>;  // projection of an impulse onto the friction law

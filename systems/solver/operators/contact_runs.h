@@ -97,7 +97,7 @@ private:
     Column<Vec4> pending_;              // impulse sum by index in node_ [N s]
     Column<std::array<Near, 4>> near_;  // by contact
     Column<PaddedMat3> block_;          // responses of node velocities to impulses on nodes, in world axes [1/kg]
-    // Index in node_ that a row of the region received last, by row. It is outdated if node_ now holds another row at
+    // Index in node_ at which each row of the region was listed last. It is outdated if node_ now holds another row at
     // this index.
     Column<Index> entry_;
     Column<Vec4> sum_;

@@ -12,12 +12,12 @@
 
 namespace skerry {
 
-/// A visiting order. It calls `body` with ranges [begin, end) that together cover the places [0, count) of the order.
-/// Contacts that share a node are never visited concurrently, and one of them always comes first.
+/// A visiting order. It calls `body` with ranges [begin, end) that together cover the indices [0, count) of the order.
+/// Contacts that share a node are never visited concurrently, and always in the same order.
 template <class W>
 concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
                                Real (*part)(std::size_t, std::size_t)) {
-    // number of the contact in the region, for a place in the visiting order
+    // number in the region of the contact with this index in the visiting order
     { walk.number_of(count) } -> std::convertible_to<std::size_t>;
     walk.contacts(count, body);
     walk.nodes(count, body);

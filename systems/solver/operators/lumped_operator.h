@@ -101,8 +101,7 @@ void LumpedOperatorBy<Walk>::settle() {
 template <RegionWalk Walk>
 void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
     settle();
-    // Velocities are an affine function of the impulses, so extrapolation by the factor of the impulses is exact for
-    // them.
+    // Velocities are an affine function of the impulses, so extrapolating both by one factor keeps them consistent.
     walk_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
     });

@@ -61,8 +61,7 @@ public:
     }
     void extrapolate(Real factor) {
         extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.previous);
-        // Velocities are an affine function of the impulses, so extrapolation by the factor of the impulses is exact
-        // for them.
+        // Velocities are an affine function of the impulses, so extrapolating both by one factor keeps them consistent.
         extrapolate_range(0, region_.velocity.size(), factor, region_.velocity, region_.scratch);
     }
     /// Recomputes the velocities from the impulses, so that rounding errors of extrapolations do not accumulate.

@@ -79,7 +79,7 @@ public:
                               : implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
         return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
     }
-    /// Row of RigidBodyTable of the rigid body with node `n`.
+    /// Row of RigidBodyTable of the body that owns node `n` (rigid, or implicit with its frame).
     std::size_t body_of(Index n) const {
         return static_cast<std::size_t>(rigid_->nodes.row(node_[static_cast<std::size_t>(n)]));
     }

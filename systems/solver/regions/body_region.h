@@ -1,4 +1,4 @@
-// Regions whose contacts or joints touch rigid or implicit bodies (docs/methods/rigid_bodies.md 3).
+// Regions that need the operator with 3x3 blocks (needs_blocks in region_blocks.h; docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include "systems/solver/operators/body_operator.h"
@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// A region with rigid or implicit bodies. Its velocity rows are: two per rigid body, then touched nodes of implicit
-/// bodies, then nodes of clusters, then other nodes. In the memory by contact, joints follow the contacts, and points
-/// of cables follow the joints.
+/// A region that BodyOperator solves. Its velocity rows are: two per rigid or implicit body (velocity, angular
+/// velocity), then touched nodes of implicit bodies, then nodes of clusters, then other nodes. In the columns by
+/// contact, rows of joints follow those of contacts; points of cables come last.
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
     std::span<const Index> cable;  // indices of the cables that the region solves
@@ -25,19 +25,19 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
         return memory.node[n] != no_index &&
                stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }
-    /// Joints and cables require method ags, because only sweeps support them. Friction that depends on the direction
-    /// also allows the Newton steps of `automatic`.
+    /// Method of the settings if it supports all rows of the region, otherwise `ags`. Regions with joints or cables
+    /// support only the sweeps of `ags`. Regions with friction that depends on the direction also support `automatic`.
     SolverMethod method(const SolverSettings& settings) const {
         const bool any = joint.empty() && cable.empty() && (!has_axes || settings.method == SolverMethod::automatic);
         return any ? settings.method : SolverMethod::ags;
     }
     void take_joint_impulses(const RegionStage& stage) const;
-    /// Corrects the joint rows so that the joints hold at the end of the step. Solves again if the correction exceeds
-    /// the tolerance (docs/methods/joints.md 2).
+    /// Corrects the offsets of the joint rows so that the joints hold at the end of the step. Sweeps again if the
+    /// correction exceeds the tolerance (docs/methods/joints.md 2).
     void hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const;
     void write_contact(const RegionStage& stage, std::size_t i) const;
-    /// Adds the impulse of contact `i` (or of point `i` of a cable) to the rigid and implicit bodies of its nodes, and
-    /// writes the velocities of these nodes.
+    /// Adds the impulse at index `i` of memory.impulse to the rigid and implicit bodies of the nodes of `stencil`, and
+    /// writes the velocities of these nodes. The stencil is that of a contact or of a cable point.
     void write_stencil(const RegionStage& stage, const Stencil& stencil, std::size_t i) const;
     void write_joints(const RegionStage& stage) const;
     void write_body_push(const RegionStage& stage) const;
@@ -57,15 +57,15 @@ inline BodyOperator operator_of(const RegionStage& stage, const BodyRegion& regi
     return {region.memory, stage.settings.friction, region.scale, region.walk, stage.memory.newton, stage.memory.runs};
 }
 
-/// Rows of ContactTable and JointBlockTable, and numbers of the solved cables, of a region.
+/// Contents of a region: rows of ContactTable, rows of JointBlockTable, and indices in SolvedCables::block.
 struct RegionRows {
     std::span<const Index> contact, joint, cable;
 };
 
-/// Loads a region with rigid or implicit bodies, or with cables. Impulses are zero.
+/// Loads a region for which needs_blocks() is true. Sets its impulses to zero.
 BodyRegion load_body_region(const RegionStage& stage, const RegionRows& rows, Index number, Index base);
 
-/// Solves a region with rigid or implicit bodies, or with cables, in one thread.
+/// Solves a region for which needs_blocks() is true, in one thread.
 RegionOutcome solve_bodies(const RegionStage& stage, const RegionRows& rows, Index number, Index base);
 
 }  // namespace skerry

@@ -15,13 +15,13 @@ CableLaw& law_of(const RegionStage& stage, Index cable) {
     return stage.memory.cable_law[static_cast<std::size_t>(cable)];
 }
 
-/// Writes the mobility matrix of a cable or tie.
+/// Writes the mobility matrix: of the segments of a cable, or of the three impulse components of a tie.
 void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughGroups& walk, std::span<Real> mobility) {
     const std::size_t count = law.segments(), first = static_cast<std::size_t>(law.first),
                       points = static_cast<std::size_t>(law.points);
     std::ranges::fill(mobility, Real(0));
-    // An impulse at point b changes the velocity of point a by the block of W. Point p ends segment p - 1 and begins
-    // segment p, so its velocity lengthens segment p - 1 and shortens segment p.
+    // An impulse at point b changes the velocity of point a by `block` times this impulse. Point p ends segment p - 1
+    // and begins segment p, so its velocity lengthens segment p - 1 and shortens segment p.
     const auto for_each_segment = [&](std::size_t point, auto&& visit) {
         if (point > 0) visit(point - 1, Real(1));
         if (point < count) visit(point, Real(-1));
@@ -130,8 +130,8 @@ void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory
     std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
     Real work = 0, loss = 0;
     Vec3 sum = Vec3::Zero();
-    Real drawn = 0;             // speed at which the cable slides past the point towards its first point [m/s]
-    Vec3 after = Vec3::Zero();  // mean velocity of the next point in the step [m/s]
+    Real drawn = 0;             // speed at which the cable slides past point p towards point 0 [m/s]
+    Vec3 after = Vec3::Zero();  // mean velocity of point p + 1 in the step [m/s]
     for (Index p = points.size(); p-- > 0;) {
         const Vec3 impulse = memory.impulse[static_cast<std::size_t>(law.first + p)].head<3>();
         Vec3 velocity = stage.inputs.cables.velocity[static_cast<std::size_t>(points.begin + p)];

@@ -1,6 +1,6 @@
-// Rows of cables in a region. A cable is solved in a region if its length is prescribed or it has friction. Each point
-// of the cable has three rows like a contact, and the law of the cable couples the rows of all points
-// (docs/methods/cables.md 2).
+// Rows of cables, and of ties of the kind `ball`, in a region. A cable is solved in a region if its length is
+// prescribed or it has friction. Each of its points has three rows like a contact, and the law of the cable couples the
+// rows of all points (docs/methods/cables.md 2).
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// Fills the law of a solved cable. Its points must already be loaded, from contact row `first` of `memory` on. `walk`:
-/// traversal of the region. Adds the cable to the sums for the error scale.
+/// Fills the CableLaw of a cable. The points of the cable must already be loaded, from index `first` of memory.contact
+/// on. `walk`: traversal of the region. Adds the cable to the sums for the error scale.
 void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& walk, Index first,
                 LoadSums& sums);
 

@@ -12,7 +12,7 @@ namespace {
 /// Motion of one body at the point of a joint, after the kick (the velocity change by forces).
 struct BodyMotion {
     Vec3 arm = Vec3::Zero();  // vector from the centre to the joint point [m]
-    // linear and angular velocity [m/s, rad/s]
+    // velocity of the centre, angular velocity [m/s, rad/s]
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
     Vec3 spin_rate = Vec3::Zero();  // angular acceleration of torque-free rotation [rad/s^2]
 
@@ -39,8 +39,8 @@ Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion&
     return (of_first + of_second) / 2 - second.spin.cross(first.at_point() - second.velocity);
 }
 
-/// Upper bound of the speed at which a joint error is corrected: recovery_speed (translation) or 1 rad/s (rotation),
-/// plus the rotational speeds of both bodies [m/s or rad/s]
+/// Upper bound of the speed at which a joint error is corrected, which avoids jerks: recovery_speed (translation) or 1
+/// rad/s (rotation), plus the rotational speeds of both bodies [m/s or rad/s]
 Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& first, const BodyMotion& second) {
     constexpr Real turning = 1;  // [rad/s]
     return of_spins ? turning + first.spin.norm() + second.spin.norm()
@@ -49,8 +49,9 @@ Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& fir
 
 /// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
 void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds) {
-    // Greatest (omega h)^2 at which the spring force is evaluated at the start of the step alone, so that its energy
-    // error stays bounded. Stiffer springs are evaluated partly at the end of the step.
+    // Greatest (omega h)^2, with omega^2 = stiffness * mobility, at which the spring force is evaluated at the start of
+    // the step alone, so that its energy error stays bounded. Stiffer springs are evaluated partly at the end of the
+    // step.
     constexpr Real at_start = 0.5;
     const JointPassiveRow& passive = axis.passive;
     const Real frequency = h * axis.kick * passive.stiffness * mobility;
@@ -88,7 +89,7 @@ Vec3 pull_of(const JointBlock& block, Real h, Real fastest) {
     return speed > fastest ? Vec3(fastest / speed * pull) : pull;
 }
 
-/// Displacement of a body over the step for the given velocities.
+/// Centre of a body before and after the step, and its rotation in the step, for the given velocities.
 struct BodyEnd {
     Vec3 center = Vec3::Zero(), center_next = Vec3::Zero();
     Mat3 turn = Mat3::Identity();
@@ -113,7 +114,7 @@ struct BodyEnd {
     Vec3 moved(const Vec3& point) const { return center_next + turn * (point - center); }
 };
 
-/// Error of a joint block at the end of the step, along the joint rows at that time [m or rad]
+/// Error of a joint block at the end of the step, in the joint axes at the end of the step [m or rad]
 Vec3 error_at_end(const JointBlock& block, const BodyEnd& first, const BodyEnd& second) {
     const Mat3 frame = second.turn * block.frame;
     if (!block.turning)
@@ -184,7 +185,7 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 }
 
 void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader) {
-    constexpr Real rounding = 1e-12;  // a smaller fraction of the absolute summands counts as mobility 0
+    constexpr Real rounding = 1e-12;  // a sum below this fraction of the sum of absolute terms counts as mobility 0
     Real sum = 0, size = 0;
     for (const JointPlaceInRegion* a : {&first, &leader})
         for (const JointPlaceInRegion* b : {&first, &leader}) {

@@ -25,14 +25,15 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader);
 
 /// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The error of the
-/// joint block at the end of the step is predicted from the velocities of the region. The part that later steps shall
-/// correct is subtracted. The remaining error divided by h is added to the offset. Returns the squared mass-weighted
-/// norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
+/// joint block at the end of the step is predicted from the velocities of the region. The part of the error that is
+/// left for later steps, because the correction speed is bounded, is subtracted. The remaining error divided by h is
+/// added to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows
+/// of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const JointPlaceInRegion& place);
 
-/// Adds a joint block to the sums for the error scale of a region. `u` is the velocity of the joint rows without
-/// impulses.
+/// Adds a joint block to the sums for the error scale of a region. `u` is the relative velocity at the joint without
+/// impulses, in world axes [m/s or rad/s].
 void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums);
 
 }  // namespace skerry

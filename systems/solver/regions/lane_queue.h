@@ -9,8 +9,8 @@ namespace skerry {
 /// True if the settings allow solving regions in SIMD lanes.
 bool lanes_allowed(const SolverSettings& settings);
 
-/// Queue of loaded and started regions. It solves eight regions of one size class at a time, finishes them and writes
-/// their rows of RegionTable. A queue belongs to one task, and thus to one worker.
+/// Queue of regions for which load_region() and start_region() have run. It solves eight regions of one size class at a
+/// time, finishes them and writes their rows of RegionTable. A queue belongs to one task, and thus to one worker.
 class LaneQueue {
 public:
     LaneQueue(const RegionStage& stage, RegionTable& regions) : stage_(stage), regions_(regions) {}

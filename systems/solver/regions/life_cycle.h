@@ -22,7 +22,7 @@ struct LoadedRegion {
     Walk walk{};
     Memory memory{};
     LoadSums sums{};
-    Real scale = 0;      // number by which the error e_nat is divided [sqrt(J)]
+    Real scale = 0;      // the relative solver error is the residual norm divided by this scale [sqrt(J)]
     Real tolerance = 0;  // tolerance of the relative error for this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
@@ -39,9 +39,10 @@ struct LoadedRegion {
     void write_contact(const RegionStage&, std::size_t) const {}
     /// Writes the impulses of joints and cables.
     void write_joints(const RegionStage&) const {}
-    /// Writes the pseudo velocities of bodies.
+    /// Writes the pseudo velocities of rigid bodies, which the split impulse has computed.
     void write_body_push(const RegionStage&) const {}
-    /// Returns the parts of the split impulse that do not come from contacts: joints, and rotation of round bodies.
+    /// Returns the parts of the split impulse that do not come from contacts: joints, and rotation of capsules and
+    /// cylinders.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
     /// Work of the split impulse against the forces of the step [J]
     Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Walk::own_masses); }
@@ -87,8 +88,8 @@ private:
 };
 
 /// Load: writes the contacts in the order of the walk, and zero impulses. `load(place, number, contact)` fills a
-/// contact and returns the contact velocity without impulses; it may add nodes to the list. Adds the sums over contacts
-/// to the sums over joints.
+/// contact and returns the contact velocity without impulses; it may add nodes to the NodeList. `place`: index in the
+/// order of the walk. `number`: index in region.row. Adds the sums over contacts to the sums over joints.
 template <class Region, class Load>
 void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     RegionMemory& data = stage.memory;

@@ -187,8 +187,9 @@ private:
         return stage_.inputs.normal[static_cast<std::size_t>(region_.row[i])];
     }
 
-    /// Adds a node that moves with a rigid body. `acts_at`: point at which the impulse acts. `beside()`: initial value
-    /// of RigidTerm::arm [m].
+    /// Adds a node that moves with a rigid body to the RigidTerm of this body in `part`. `acts_at`: point at which the
+    /// impulse acts. `beside()`: initial value of RigidTerm::arm, to which the weighted arms of the nodes are added
+    /// [m].
     void add_term(RigidPart& part, Index body, const Vec3& acts_at, Real weight, auto&& beside) {
         const RigidInputs& rigid = stage_.inputs.rigid;
         Index k = 0;

@@ -11,13 +11,13 @@
 
 namespace skerry {
 
-/// Operator of a region in a step of the engine. In addition to the functions for methods it supports the split
-/// impulse.
+/// Operator of a region. In addition to the functions that solver methods call (ContactOperator), it has those of the
+/// split impulse.
 template <class Op>
 concept RegionOperator = ContactOperator<Op> &&
     requires(const Op& op, Index i, Real number, Vec4* velocity, Real& impulse) {
     { op.velocity(i) } -> std::same_as<Vec4>;  // velocity u of contact i for the present impulse
-    // squared energy norm of a push that changes the normal speed of contact i by this number [J]
+    // squared energy norm [J] of a push that changes the normal speed of contact i by `number` [m/s]
     { op.push_size(i, number) } -> std::same_as<Real>;
     // One contact step of the split impulse, which changes the pseudo velocities.
     { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;
@@ -55,8 +55,8 @@ public:
         const Asked asked = ask();
         if (!pressed && !asked.by_turns) return false;
         sweep(asked.size);
-        // The push has rotated bodies, and rotation changes the gap of contacts. The loss of gap is therefore computed
-        // and pushed again, in this number of rounds.
+        // The push rotates bodies, and rotation changes the gaps of contacts. This number of times, the loss of gap is
+        // computed again with the new rotation, and more sweeps compensate for it.
         constexpr int turn_rounds = 2;
         for (int round = 0; round < turn_rounds && others_.any_turns(); ++round) sweep(ask().size);
         return true;

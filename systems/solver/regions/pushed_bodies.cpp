@@ -10,9 +10,9 @@
 namespace skerry {
 namespace {
 
-/// Height along the normal of the point `place` of a cylinder after its axis has rotated from `axis` to `axis_then`,
-/// without rotation about the axis. If `place` is the lowest point of a rim, the result is the height of the rim's
-/// lowest point after the rotation, because the lowest point moves around the rim [m]
+/// Height along the normal, above the centre of a cylinder, of its point `place` after its axis has rotated from `axis`
+/// to `axis_then`, without rotation about the axis. If `place` is the lowest point of a rim, the result is the height
+/// of the rim's lowest point after the rotation, because the lowest point moves around the rim [m]
 Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
     // A point counts as the lowest of its rim if it is higher than the lowest one by at most `lowest` times the radius.
     // Below the angle `least_tilt` between axis and normal [rad], many points of a rim would count as lowest, so

@@ -1,4 +1,5 @@
-// Parts of a split impulse that concern joints, and the gap that capsules and cylinders lose by rotation.
+// Additions to the split impulse: it also holds joints, and replaces the gap that capsules and cylinders lose by
+// rotation.
 #pragma once
 
 #include <span>
@@ -11,8 +12,9 @@ namespace skerry {
 /// Parts of the split impulse that compensate rotation, and parts that hold joints.
 ///
 /// Contacts are solved for straight motion of their points, but points on the axis of a capsule or on the surface of a
-/// cylinder move on arcs. A spinning capsule that is pressed rotates its ends further towards the touched surface. In
-/// each step this loss would use up part of the contact distance (docs/methods/rigid_bodies.md 6.2).
+/// cylinder move on arcs. A spinning capsule that is pressed against a surface turns its end further towards the
+/// surface than the solver assumes. Without compensation, this loss of gap would use up part of the contact distance in
+/// each step (docs/methods/rigid_bodies.md 6.2).
 ///
 /// In joints, locked rows hold during the push, and axes stay within their limits for push and step together. The joint
 /// impulses of the push are stored in slot 0 of the workspace, which the method no longer needs.

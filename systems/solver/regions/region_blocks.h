@@ -1,13 +1,13 @@
-// Lists of the node clusters and rigid bodies that the contacts of each region touch.
+// Lists of the node clusters and rigid bodies that each region touches.
 #pragma once
 
 #include "systems/solver/regions/region_stage.h"
 
 namespace skerry {
 
-/// Lists the clusters and rigid bodies that the contacts and cables of each region touch, and finds the first node row
-/// of each region. All nodes of a touched cluster get rows, and a rigid body gets two rows. Returns the number of node
-/// rows of all regions.
+/// Lists the clusters and rigid bodies that the contacts, joints and cables of each region touch, and finds the first
+/// node row of each region. All nodes of a touched cluster get rows, and a rigid body gets two rows. Returns the number
+/// of node rows of all regions.
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory);
 
 inline bool touches_cluster(const RegionMemory& memory, Index number) {
@@ -26,8 +26,8 @@ inline bool needs_blocks(const RegionMemory& memory, const RegionTable& regions,
 /// Total number of points of the given solved cables.
 std::size_t points_of_cables(const RegionInputs& inputs, std::span<const Index> cables);
 
-/// Upper bound of the node rows of a region that touches clusters or rigid bodies, or that has cables. `stencils`:
-/// number of its contacts and points of cables.
+/// Upper bound of the number of node rows of a region that touches clusters or rigid bodies, or that has cables.
+/// `stencils`: number of its contacts and points of cables.
 std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t stencils, Index number);
 
 }  // namespace skerry

@@ -31,7 +31,7 @@ struct RegionTask {
 /// Data of the regions that are solved by all workers together, and the team of workers.
 struct LargeRegions {
     Team team;
-    std::vector<std::unique_ptr<ColouredRegion>> region;  // one for each large region of the step
+    std::vector<std::unique_ptr<ColouredRegion>> region;  // entry k: k-th large region of the step; never shrinks
 };
 
 /// Grows a column to at least `count` rows. Columns never shrink, since shrinking and growing again would clear rows
@@ -69,15 +69,17 @@ struct RegionMemory {
     Column<LumpedContact> contact;
     Column<Vec4> impulse;  // [N s]
     std::array<Column<Vec4>, workspace_limit> workspace;
-    Column<Real> push_impulse;  // split impulses; before that, normal impulses of frictionless regions [N s]
-    Column<Real> push_bias;     // biases of the split impulse [m/s]; before that, previous normal impulses [N s]
+    // split impulses; during the velocity solve, normal impulses of frictionless regions [N s]
+    Column<Real> push_impulse;
+    // biases of the split impulse [m/s]; during the velocity solve, previous normal impulses [N s]
+    Column<Real> push_bias;
     // Columns by node of a region. Regions without clusters and rigid bodies have four rows per contact; the rows of
     // the other regions follow.
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
-    // Data of regions that touch clusters of nodes or rigid bodies.
-    // For each region: list of the touched clusters, list of the touched bodies; may be empty.
+    // Data of regions that touch clusters of nodes or rigid bodies. For each region: list of the touched clusters, and
+    // list of the touched rigid bodies.
     Ragged<Index> region_clusters, region_rigid;
     // 1 for each region in which the friction of a contact depends on the direction; empty if no contact has an axis
     Column<std::uint8_t> region_has_axes;
@@ -85,13 +87,13 @@ struct RegionMemory {
     // For each cluster and for each body: last region in whose list find_region_blocks has put it, so that no list
     // contains it twice.
     Column<Index> region_of_cluster, region_of_rigid;
-    Column<RigidPart> rigid_part;  // by contact; empty if there are no rigid bodies
-    // Laws by row of the regions with joints or cables. These rows follow the contact rows, so entry 0 is row
-    // contact_rows.
+    Column<RigidPart> rigid_part;  // by contact; empty if no step has needed BodyOperator
+    // Laws of joints, by row of the regions with joints or cables. These rows follow the rows of all contacts, so entry
+    // 0 belongs to row `contact_rows`.
     Column<JointLaw> joint_law;
     Column<CableLaw> cable_law;   // by solved cable
     Column<Real> cable_mobility;  // mobility matrices of all cables (CableBlock::mobility) [1/kg]
-    // the spans of CableLaw from far_mobility on, one after the other, each by point of all cables
+    // storage of the spans of CableLaw from far_mobility on: for each span, one entry per point of all cables
     Column<Real> cable_numbers;
     // For regions with joints or cables: index of the first row of the region. The contacts of the region come first,
     // then the joints, then the points of the cables.
@@ -99,7 +101,7 @@ struct RegionMemory {
     // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints or
     // cables.
     std::size_t contact_rows = 0, rows = 0;
-    Column<Vec4> free_velocity;  // by row of `velocity`; empty if there are no rigid bodies [m/s]
+    Column<Vec4> free_velocity;  // by row of `velocity`; empty if no step has needed BodyOperator [m/s]
     // For each row of NodeTable: index that the node received last in the list of its region (NodeList). It is outdated
     // if the list now holds another node at this index.
     Column<Index> place;
@@ -112,7 +114,7 @@ struct RegionMemory {
     // by task
     Column<RegionTask> task;
     LargeRegions large;
-    // Pools of working memory for regions that touch rigid bodies.
+    // Pools of working memory for regions that BodyRegion solves, one entry per worker.
     Pool<NewtonEquations> newton;
     Pool<ContactRuns> runs;
     std::atomic<bool> pushed = false;  // true if some region has written push_out in this step

@@ -37,9 +37,9 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
 
 SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
 
-/// Tolerance of a region with the contacts `row`. If all its bodies are still, it is SolverSettings::still_tolerance if
-/// that is smaller than the usual tolerance. With a greater tolerance the solver error would keep the bodies from
-/// coming to rest (docs/methods/errors.md 7).
+/// Tolerance of a region with the contacts `row`. If all its bodies are still: the smaller of
+/// SolverSettings::still_tolerance and `tolerance`; otherwise `tolerance`. With a greater tolerance the solver error
+/// would keep the bodies from coming to rest (docs/methods/errors.md 7).
 Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
 /// Memory of one region: `count` entries of the columns by contact from index `base` on, and node.size() entries of the

@@ -8,8 +8,9 @@
 namespace skerry {
 
 /// True if the region is solved in its coloured order. Neither this answer nor the results depend on the number of
-/// workers. It is false for regions that touch clusters or rigid bodies. It is also false with fixed iterations: there
-/// the iterates of a group of contacts must not depend on the size of the region that contains it.
+/// workers. It is false for regions that touch clusters or need BodyOperator (needs_blocks). It is also false with
+/// fixed iterations: there the iterates of a group of contacts must not depend on the size of the region that contains
+/// it.
 bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
 using RegionByColour = LumpedRegion<ByColour>;

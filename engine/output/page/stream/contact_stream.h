@@ -22,21 +22,21 @@ struct ContactSides {
 };
 
 /// Encoder of contacts. A contact continues a contact of the previous frame if both have the same partners and nodes.
-/// It is then written as changes from the previous frame.
+/// Its numbers are then written as changes from their values in the previous frame.
 class ContactStream {
 public:
     /// Writes, in this order:
-    /// 1. for each contact: 0 if it is new, otherwise 1 + zigzag(its index in the previous frame - expected index),
-    /// where the expected index is one more than the index of the last match, and 0 before the first match;
-    /// 2. for each new contact: first, second and collider, each plus one;
-    /// 3. component by component, for all contacts: x, y, z of the point, x, y, z of the force, and the normal force,
-    /// each as change from a reference. The reference of a contact that continues is its value in the previous frame.
-    /// The reference of a new contact is the value of the preceding contact of this frame, if both have the same first
-    /// body; otherwise it is zero for forces, and the first vertex of the body for points;
-    /// 4. for all contacts: the change of the region number from the preceding contact;
-    /// 5. for all contacts: the state as u8 (0 open, 1 stick, 2 slide).
+    ///   1. for each contact: 0 if it is new, otherwise 1 + zigzag(its index in the previous frame - expected index),
+    ///      where the expected index is one more than the index of the last match, and 0 before the first match;
+    ///   2. for each new contact: first, second and collider, each plus one;
+    ///   3. component by component, for all contacts: x, y, z of the point, x, y, z of the force, and the normal force,
+    ///      each as change from a reference. The reference of a contact that continues is its value in the previous
+    ///      frame. The reference of a new contact is the value of the preceding contact of this frame, if both have the
+    ///      same first body; otherwise it is zero for forces, and the first vertex of the body for points;
+    ///   4. for all contacts: the change of the region number from the preceding contact;
+    ///   5. for all contacts: the state as u8 (0 open, 1 stick, 2 slide).
     /// Points are encoded on the lattice of the first body. If the contact has no first body, the lattice of the second
-    /// body is used, and without any body a lattice of 1 um.
+    /// body is used, and without any body a lattice at the origin with steps of 1 um.
     void put_frame(const Frame& frame, std::span<const ContactSides> sides, const std::vector<BodyStream>& bodies,
                    const ValueScale& force, std::string& out);
 

@@ -19,22 +19,22 @@ struct PageLine {
     LineKind kind;
 };
 
-/// Encoder of all lines. It stores the points and forces of the lines in the previous frame.
+/// Encoder of all lines. It stores the points and forces of the previous frame, from which changes are computed.
 class LineStream {
 public:
     /// Writes the number of lines as a count. If it is not zero, writes further:
-    /// 1. the exponent e of the upper end 4^e of the scale of forces (ValueScale), as change from zero;
+    /// 1. the exponent e of the scale of the forces, whose largest value is 4^e (ValueScale), encoded like a change;
     /// 2. in the first frame with lines: f64 origin[3] and step of the lattice on which points are encoded [m];
     /// 3. for each line: its number and its number of points as counts; then x of all points, y of all points, z of all
     /// points, and the forces at all points, each value as change from a reference. The reference is the value of this
-    /// point in the previous frame, if the line had as many points there. Otherwise it is the value of the preceding
-    /// point of the line, and zero for the first point.
+    /// point in the previous frame, if the line had the same number of points in that frame. Otherwise it is the value
+    /// of the preceding point of the line, and zero for the first point.
     void put_frame(const Frame& frame, std::string& out);
 
     std::span<const PageLine> lines() const { return lines_; }
 
 private:
-    // x, y, z and force of a point
+    // encoded x, y, z (Lattice) and encoded force (ValueScale) of a point
     using Row = std::array<std::int64_t, 4>;
 
     std::map<decltype(LineFrame().key()), Index> numbers_;

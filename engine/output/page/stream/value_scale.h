@@ -44,7 +44,8 @@ private:
 };
 
 /// Converts a code of a scale with `exponent_prev` to the code of the same value with the larger `exponent`. Each
-/// increase of the exponent by one halves the code.
+/// increase of the exponent by one halves the code. The shift is limited to 31, because larger shifts of an int are
+/// undefined.
 inline int shifted(int code, int exponent_prev, int exponent) {
     return code >> std::min(exponent - exponent_prev, 31);
 }

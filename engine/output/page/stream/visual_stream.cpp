@@ -11,7 +11,7 @@ namespace {
 
 constexpr Real weight_steps = 1 << 16;
 
-/// Writes `count` integers, each as change from the previous one.
+/// Writes `count` integers, the first as it is, the others as changes from the previous integer.
 void put_changes(std::string& out, std::size_t count, auto&& value) {
     std::int64_t last = 0;
     for (std::size_t i = 0; i < count; ++i) {

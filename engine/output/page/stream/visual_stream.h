@@ -17,14 +17,14 @@ public:
     Index number_of(const BoundVisual& visual);
     /// The surfaces from number `first` on, compressed. Counts and changes are encoded as in pack.h. A surface consists
     /// of
-    ///   numbers of nodes, triangles, texture points and materials, as counts; f64 step of the offsets [m]
+    ///   numbers of nodes, triangles, texture points and materials, as counts; f64 resolution of the offsets [m]
     ///   the four body nodes that each surface node follows: the first body node of all surface nodes, then the second,
     ///     and so on, each as change from the previous number
     ///   weights of the first three of these body nodes in units of 2^-16, in the same order; the sum of all four is 1
-    ///   offsets axis by axis in steps, as changes
-    ///   number of gradients as a count, and for each: its body node as change from the previous gradient, number of
-    ///     terms; for each term: its body node as change from the previous term, or from the body node of the gradient,
-    ///     and f32 gradient[3] [1/m]
+    ///   offsets d (see BoundVisual), axis by axis, in units of their resolution, each as change from the previous one
+    ///   number of body nodes with a deformation gradient as a count, and for each: the node as change from the last
+    ///     one, number of terms of the gradient; for each term: its body node as change from the last term (the first
+    ///     term: from the node with the gradient), and f32 gradient[3] [1/m]
     ///   corners of the triangles as changes
     ///   if there are texture points: u, then v of all points in units of 2^-16, and corners, as changes
     ///   if there are materials: material of each triangle as change
@@ -37,7 +37,7 @@ private:
     std::vector<std::vector<VisualMaterial>> materials_;
 };
 
-/// Marks the nodes of the body on which the positions and values of a visual surface depend.
+/// Sets used[n] for each node n of the body that the positions or values of the visual surface depend on.
 void mark_nodes(const BoundVisual& visual, std::vector<bool>& used);
 
 }  // namespace skerry

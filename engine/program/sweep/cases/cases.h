@@ -10,9 +10,10 @@
 namespace skerry {
 
 struct Parameter {
-    std::string name;                 // heading of the parameter's column in tables
-    std::vector<std::string> places;  // values of the scene that it sets, e.g. materials.rubber.young_modulus
-    Place place;                      // location of the parameter in the file of cases, for error messages
+    std::string name;  // heading of the parameter's column in tables
+    // places in the scene that the parameter sets, e.g. materials.rubber.young_modulus
+    std::vector<std::string> places;
+    Place place;  // location of the parameter in the file of cases, for error messages
 };
 
 struct Cases {

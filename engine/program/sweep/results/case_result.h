@@ -12,8 +12,8 @@
 namespace skerry {
 
 /// Outcome of a case.
-/// - ok: the case was simulated to its end.
-/// - failed: the simulation ended early with an error.
+/// - ok: the case was simulated to its end, and the results can be trusted.
+/// - failed: the simulation ended early, or its results cannot be trusted (WorldReport::distrust).
 /// - refused: the scene is invalid or cannot be started.
 enum class CaseStatus { ok, failed, refused };
 template <>

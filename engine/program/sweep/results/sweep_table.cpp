@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_lines = 60;  // largest number of cases in the table on the terminal
 constexpr int most_messages = 10;
-// The table on the terminal shows the figures of probes whose names have these endings.
+// The table on the terminal shows figures of probes if the name of the figure has one of these endings.
 constexpr const char* shown_of_probes[] = {".slip_m", ".largest_force_max_N", ".largest_von_mises_max_Pa",
                                            ".smallest_volume_ratio_min"};
 
@@ -112,7 +112,7 @@ std::string totals_text(const SweepTable& table) {
     return text + "; " + duration_text(cpu) + " of CPU time in total\n";
 }
 
-/// Returns a note if at least two cases have results and all of these ended in bitwise equal states, because the
+/// Returns a note if at least two cases were simulated and all simulated cases ended in bitwise equal states: the
 /// parameters then had no effect. Otherwise returns an empty text.
 std::string sameness_text(const SweepTable& table) {
     std::string hash;

@@ -26,8 +26,8 @@ std::string table_text(const SweepTable& table);
 /// Cells of unknown values are empty.
 std::string table_csv(const SweepTable& table);
 
-/// Returns a web page with the table, and with a plot of any number against any parameter. The page is one file and
-/// needs no other files.
+/// Returns a web page with the table, and with a plot of any parameter or number against any other. The page is one
+/// file and needs no other files.
 std::string table_page(const SweepTable& table);
 
 }  // namespace skerry

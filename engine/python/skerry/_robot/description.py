@@ -224,7 +224,8 @@ class Robot:
 
 
 def mass_of(parts: list[tuple[float, Reals, Reals]]) -> tuple[float, Reals, Reals]:
-    """Mass [kg], centre of mass [m] and inertia about it [kg m^2] of a whole. parts: the three values of each part."""
+    """Mass [kg], centre of mass [m], and inertia about this centre [kg m^2] of a body made of parts. parts: these three
+    values of each part."""
     mass = sum(part[0] for part in parts)
     center = sum((part[0] * part[1] for part in parts), np.zeros(3)) / (mass if mass > 0 else 1)
     inertia = np.zeros((3, 3))

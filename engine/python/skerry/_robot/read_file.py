@@ -78,7 +78,7 @@ class _Reader:
 
     @staticmethod
     def name_all(items: Sequence[Any], kind: str) -> None:
-        """Names the items without name by kind and number, such as "joint_0"."""
+        """Gives each item without a name a name of the kind and a number, such as "joint_0"."""
         names = {item.name for item in items}
         for number, item in enumerate(items):
             if not item.name:
@@ -87,7 +87,8 @@ class _Reader:
                     item.name += "_"
 
     def found(self, file: str) -> str:
-        """Path of a mesh file, for package:// names in the folder of the package. Refuses missing files."""
+        """Path of a mesh file. For a name package://NAME/FILE it is in the folder of the package NAME. Refuses missing
+        files and unknown file types."""
         if not file:
             return file  # the MJCF file itself contains the mesh
         if Path(file).suffix.lower() not in _MESHES:
@@ -142,7 +143,7 @@ class _Reader:
     # Links.
 
     def frame(self, positions: Reals, quaternions: Reals, row: int) -> Frame:
-        """Frame from a row of two tables of the model; quaternions are (w, x, y, z)."""
+        """Frame from the row `row` of two tables of the model; quaternions are (w, x, y, z)."""
         w, x, y, z = quaternions[row]
         rotation = np.array([
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -324,7 +325,8 @@ class _Reader:
         elif model.actuator_biastype[a] != affine or bias[0] != 0:
             return None
         elif bias[1] == -gain[0]:
-            # A servo exerts gain * (target - coordinate). With both within the limits, this is at most gain * way.
+            # A servo exerts gain * (target - coordinate). With target and coordinate within the joint's limits,
+            # this is at most gain * way. Without limits, `way` is a full turn.
             way = 2 * math.pi if joint.lower is None or joint.upper is None else joint.upper - joint.lower
             drive, most = "position", gain[0] * gear * gear * way
         elif bias[1] == 0 and bias[2] == -gain[0]:

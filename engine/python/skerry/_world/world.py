@@ -49,8 +49,8 @@ if hasattr(os, "register_at_fork"):
 
 @atexit.register
 def _end_calls() -> None:
-    """Ends the calls of daemon threads, which would abort the process after the end of Python."""
-    latest = time.monotonic() + 10  # waits at most 10 s, as callbacks may not end
+    """Ends calls of the extension module in daemon threads, which would abort the process after the end of Python."""
+    latest = time.monotonic() + 10  # waits at most 10 s, because a callback may never return
     while _core.end_calls() and time.monotonic() < latest:
         time.sleep(1e-3)
     if threading.active_count() > 1:  # objects of a thread that still runs are no leaks
@@ -62,7 +62,7 @@ _LARGEST_TRUSTED_ERROR = 0.5
 
 
 _MOST_CALLS = 2**53
-"""Number of calls of advance() in a run up to which a number of type float counts them exactly."""
+"""Largest number of calls of advance() in a run. Beyond it, numbers of type float cannot count the calls exactly."""
 
 
 class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
@@ -417,7 +417,7 @@ World.__init__.__doc__ = f"Makes an empty world. The keywords are the fields of 
 
 
 def _frames_of_package() -> int:
-    """Number of frames from _warn() up to the caller of the package, as warnings.warn() counts them."""
+    """Argument `stacklevel` of warnings.warn() in _warn(): the warning then names the line that called the package."""
     folder = os.path.dirname(os.path.dirname(__file__)) + os.sep
     frame, count = sys._getframe(1), 1
     while frame.f_back is not None and os.path.abspath(frame.f_code.co_filename).startswith(folder):

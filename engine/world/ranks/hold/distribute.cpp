@@ -47,7 +47,8 @@ void sort_self_crossings(WorldState& world) {
     });
 }
 
-/// Collective: all ranks must call it. Returns the message of rank 0; `mine` counts only there.
+/// Collective: all ranks must call it. Returns the message of rank 0. `mine`: message of this rank, used only on rank
+/// 0.
 RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
     return std::move(ranks.gather_everywhere(mine).front());
 }
@@ -56,8 +57,8 @@ RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
 /// bodies is in memory twice at a time.
 constexpr Index batches = 8;
 
-/// Message with the rows of the marked bodies of one batch. `pairs_of`: rank whose pairs the first batch also contains.
-/// `with_records`: true if the message contains the records of the bodies.
+/// Message with the rows of the marked bodies of one batch. `pairs_of`: rank that owns the pairs whose contact data the
+/// first batch also contains. `with_records`: true if the message contains the records of the bodies.
 RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> marked, Index batch, int pairs_of,
                              bool with_records) {
     const WholeWorld& whole = world.ranks.whole;
@@ -122,7 +123,7 @@ std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     for (const Index place : copy.ranks.place) kept.push_back(whole.owner[place] == WholeWorld::everywhere);
     replace_rows(copy, kept, {}, [](std::uint64_t) { return false; });
     copy.ranks = {};
-    copy.model.disabled_pairs.key.clear();  // keys of absent bodies
+    copy.model.disabled_pairs.key.clear();  // their keys name bodies that are absent here
     return world.to_bytes();
 }
 
@@ -266,7 +267,8 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
 }
 
 std::optional<World> gathered(const World& world) {
-    WorldState& state = WorldAccess::state_of(const_cast<World&>(world));  // rows are read, not changed
+    // tables can be read only through mutable references; no row is changed
+    WorldState& state = WorldAccess::state_of(const_cast<World&>(world));
     if (!state.ranks.on()) return world.clone();
     std::optional<World> whole;
     act_together(state.ranks.ranks, [&] { whole = gather_parts(state); });

@@ -14,7 +14,7 @@ namespace skerry {
 
 namespace {
 
-/// Number of rank searches for which a rank keeps a body that it has requested to solve a region.
+/// Number of rank searches (update_ghosts) for which a rank keeps a body that it has requested to solve a region.
 constexpr int searches_of_requests = 8;
 /// Greatest number of steps between two rank searches. Bodies that hardly move thus still get new owners when costs
 /// have changed.
@@ -24,7 +24,7 @@ constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. It is above 1, because the solver visits a contact
 /// in several iterations.
 constexpr Real contact_cost = 10;
-/// Cost of a body without elements, in units of the cost of an explicit element.
+/// Cost of a body apart from its elements and contacts, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
 /// Distance by which a body may move before its holders are found again [m]: about the size of its surface elements,
@@ -43,10 +43,10 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     const Model& model = world.model;
     const BodyTable& bodies = model.bodies;
     Range nodes = bodies.nodes[body];
-    // the other nodes of a cylinder, ball or capsule serve only to draw it
+    // a cylinder, ball or capsule is defined by its core nodes; the others serve only to draw it
     if (const Index core = bodies.core_nodes[body]; core > 0) nodes.end = nodes.begin + core;
     Aabb box = empty_box();
-    // greatest speed in the last step; a contact may have slowed the body since then
+    // greatest speed in the last step, which may exceed the present speed because of a contact
     Real speed = bodies.max_speed[body];
     const std::span<const Real> tried = world.ranks.tried_speed;
     if (body < tried.size() && std::isfinite(tried[body])) speed = std::max(speed, tried[body]);
@@ -70,7 +70,8 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
 /// flag.
 struct SearchHeader {
     std::uint64_t extents, requests, stale;
-    std::uint64_t keeps_owners;  // 1: bodies must not get new owners now
+    // 1: bodies must not get new owners, because a rank stores crossings of an unfinished step
+    std::uint64_t keeps_owners;
 };
 
 /// Facts about the bodies of all ranks.
@@ -159,7 +160,7 @@ public:
     bool owners_change() const { return !std::ranges::equal(owner_, before_.owner); }
     const Column<std::int32_t>& owner() const { return owner_; }
     const std::vector<std::vector<int>>& holders() const { return holders_; }
-    /// True if the old owner of a body sends the rows of the body to a rank.
+    /// True if the rank that owned a body before the change sends the rows of the body to `rank`.
     bool is_sent(Index place, int rank) const {
         const auto p = static_cast<std::size_t>(place);
         if (!contains(holders_[p], rank) || rank == before_.owner[place]) return false;
@@ -182,8 +183,8 @@ private:
         std::erase_if(whole.fetched, [](const FetchedUnit& fetched) { return fetched.searches <= 0; });
     }
 
-    /// A rank that receives no rows keeps the ghosts that it no longer needs, because a change of its tables costs as
-    /// much as some steps.
+    /// If no owner changes, a rank that receives no rows keeps the ghosts that it no longer needs, because a change of
+    /// its tables costs as much as some steps.
     void keep_ghosts(std::span<const BodyExtent> extents, int rank_count) {
         if (owners_change()) return;
         std::vector<std::uint8_t> receives(static_cast<std::size_t>(rank_count), 0);
@@ -272,7 +273,7 @@ struct GhostMotion {
 /// Finds whether a body may leave its box in this step, because its path since the last rank search plus its motion in
 /// this step is not below its margin. The motion is the larger of two values: the reach of the collision search, which
 /// follows from the speed at the start of the step, and the path at the greatest speed in this attempt, after forces
-/// and contacts.
+/// and contacts. Also requests a rank search if the last one was steps_between_searches steps ago.
 void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
                   const RunCounters& run, const std::uint64_t& searched_step, RankFindings& mine) {
     const std::span<const Real> reach = search.memory.body_reach;

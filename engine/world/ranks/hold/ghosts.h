@@ -17,15 +17,15 @@ std::vector<BodyExtent> extents_of(const WorldState& world, std::span<const std:
 /// was used to find the holders.
 void note_holders(RankState& ranks, std::span<const BodyExtent> extents);
 
-/// Lists the stage that finds out whether a body may leave its box in this step (RankFindings::ghosts_expired). There
-/// is no stage if this process simulates the whole world.
+/// Lists the stage that finds out whether a body may leave its box in this step, or the holders were found too many
+/// steps ago (RankFindings::ghosts_expired). Lists nothing if this process simulates the whole world.
 void list_ghost_watch(WorldState& world, TaskGraph& graph);
 /// Lists the stage that measures how far bodies have moved since their holders were found.
 void list_ghost_paths(WorldState& world, TaskGraph& graph);
 
-/// Collective; between attempts at a step. Finds the ranks that must hold each body for the present positions and
-/// requests, and moves bodies to them. If the costs of the ranks differ too much, bodies get new owners. Changes no
-/// state of any body.
+/// Collective; between attempts at a step. Finds the ranks that must hold each body, from the present positions and
+/// from RankState::requests, and sends bodies to them. With OwnerMap::curve, bodies get new owners if the costs of the
+/// ranks differ too much. Changes no state of any body.
 void update_ghosts(WorldState& world);
 /// Like update_ghosts, but with given owners. `owner`: by row of the undivided world.
 void move_to_owners(WorldState& world, const Column<std::int32_t>& owner);

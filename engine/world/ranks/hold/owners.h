@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Properties of a body that decide which ranks own and hold it. Ranks send them to each other.
+/// Properties of a body that decide which ranks own and hold the body. Ranks send these properties to each other.
 struct BodyExtent {
     Index place;
     Real cost;    // time per step, in units of the time for an explicit element

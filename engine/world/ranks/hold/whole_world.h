@@ -33,8 +33,8 @@ struct WholeWorld {
     // records of bodies that this rank does not hold: complete on rank 0, only names on all other ranks
     std::vector<BodyRecord> records;
     std::vector<Index> place_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
-    // Row in the undivided world of each row that connects bodies. Index: table, in the order of
-    // Model::for_each_joining, then handle slot of the row. The last list is for attachments.
+    // For each row that connects bodies: its row in the undivided world. There is one list for each table, in the order
+    // of Model::for_each_joining, and a last one for attachments. Each list is indexed by handle slot.
     std::vector<std::vector<Index>> joining_place;
     // For each row of the undivided world: ranks that hold the body, ascending.
     std::vector<std::vector<int>> holders;

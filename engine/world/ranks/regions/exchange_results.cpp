@@ -35,7 +35,7 @@ struct MailedDeformation {
 /// ends a list.
 struct MailedHold {
     Index body = no_index;  // row of the body in the undivided world
-    Index entry = 0;        // index in the joined node lists of all attachments of the body
+    Index entry = 0;        // index in the concatenated node lists of all attachments of the body
     Vec3 impulse = Vec3::Zero();
 };
 
@@ -59,7 +59,7 @@ struct HoldRows {
         for (std::size_t a = 0; a < body.size(); ++a)
             if (body[a] == of_body) visit(nodes[a]);
     }
-    /// Index of a held node in the joined node lists of all attachments of its body. `row`: row of
+    /// Index of a held node in the concatenated node lists of all attachments of its body. `row`: row of
     /// AttachmentTable::node.
     Index number(Index of_body, Index row) const {
         Index before = 0, found = no_index;

@@ -49,8 +49,8 @@ private:
     /// Result of solver_of for a rank that shares no body with this rank: a number below -1.
     static int no_peer(int owner) { return -2 - owner; }
 
-    /// True if the solver of a region holds the body. All ranks hold kinematic bodies. Otherwise requests a copy of the
-    /// body for the solver. `peer`: result of solver_of.
+    /// True if the solver of a region holds the body; always true for kinematic bodies, which all ranks hold. If false,
+    /// requests a copy of the body for the solver. `peer`: result of solver_of.
     bool reaches(int peer, Index body) {
         if (body == no_index || bodies_.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic) return true;
         if (peer >= 0 && bodies_.is_held_by(peer, body)) return true;
@@ -59,8 +59,8 @@ private:
         return false;
     }
 
-    /// Tells each peer for which units of this rank it must solve the joints, ties and cables. Units of other ranks
-    /// count as solved elsewhere until a message of their owner assigns them to this rank.
+    /// Tells each peer for which units of this rank the peer must solve the joints, ties and cables. Units of other
+    /// ranks count as solved elsewhere until a message of their owner assigns them to this rank.
     void send_units() {
         regions_.elsewhere.assign(regions_.unit.size(), 1);
         regions_.unit_count.assign(bodies_.peers.size(), 0);
@@ -150,8 +150,8 @@ private:
         }
     }
 
-    /// Moves the contacts that this rank has found to RankRegions::found, and fills the contact table with those that
-    /// it solves, in key order.
+    /// Moves the contacts that this rank has found to RankRegions::found, and fills the contact table with the contacts
+    /// that this rank solves, in key order.
     void merge() {
         std::swap(contacts_, regions_.found);
         const ContactTable& found = regions_.found;

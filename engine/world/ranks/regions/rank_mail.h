@@ -20,7 +20,8 @@ void put_rows(std::span<const T> rows, RankMessage& message) {
     message.insert(message.end(), bytes.begin(), bytes.end());
 }
 
-/// Messages to and from all peers. Their memory is reused, so that a steady state allocates nothing.
+/// Messages to and from all peers. Their memory is reused, so that messages no longer than earlier ones need no
+/// allocation.
 struct RankMail {
     std::vector<RankMessage> out, in;  // by index in RankState::peers
 

@@ -75,7 +75,7 @@ struct SharedBodies {
     }
 };
 
-/// Data of an attempt at a step about regions that several ranks touch, and working memory.
+/// Data about the regions with bodies of several ranks in one attempt at a step, and working memory.
 struct RankRegions {
     RankMail mail;
     // For each body: first body of its unit, a set of bodies that joints, ties, cables, springs or other rows connect.
@@ -105,7 +105,7 @@ struct RankRegions {
     Column<std::uint8_t> in_unit;
     Column<RegionLabel> label;  // by node; valid at the nodes in `group`
     Column<Index> group;        // first nodes of the groups that contacts of this rank touch, and of own units
-    Column<Index> group_of;     // by contact: first node of one of its groups, which are all in one region; or no_index
+    Column<Index> group_of;     // by contact: first node of one of its groups; no_index: none of its nodes can move
     // by node; valid at the roots of `sets`: 1 if another rank has sent a label for a group of the region
     Column<std::uint8_t> open;
     Column<int> changed;           // by node; valid at the roots of `sets`: last round in which the label changed

@@ -11,10 +11,10 @@
 
 namespace skerry {
 
-/// Bodies on which joints, ties and cables act. These rows belong to regions as contacts do.
+/// Bodies on which joints, ties and cables act. Joints, ties and cables belong to regions as contacts do.
 struct JoinedBodies {
     const BodyLinks& links;
-    std::array<std::span<const Index>, 5> body;  // rows of BodyTable: columns of JointTable, TieTable and CableTable
+    std::array<std::span<const Index>, 5> body;  // rows of BodyTable, from JointTable, TieTable and CableTable
 
     static JoinedBodies bind(const Binder& binder, const Model& model) {
         return {

@@ -112,7 +112,7 @@ void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
 }
 
 /// Lets the handles of a table refer to its present rows. Handles of rows on other ranks keep their slots.
-/// `count_before`: number of rows before. `slot`: slot of each present row.
+/// `count_before`: number of rows before the tables were replaced. `slot`: slot of each present row.
 void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const std::uint32_t> slot) {
     map.rows_moved(std::vector<Index>(count_before, no_index));
     for (std::size_t row = 0; row < slot.size(); ++row)

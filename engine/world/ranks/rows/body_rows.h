@@ -10,7 +10,8 @@
 
 namespace skerry {
 
-/// Members of StepWatch with the progress of the stable-step checks. `body` and `kept` are rows of BodyRows::model.
+/// Members of StepWatch with the progress of the stable-step checks. `body` and `kept` are rows of the BodyTable in
+/// BodyRows::model.
 struct WatchProgress {
     Index body = 0, kept = 0;
     StepEvaluation evaluation;
@@ -29,7 +30,7 @@ struct FoundSelfCrossing {
 struct BodyRows {
     Model model;                  // only these rows, node clusters and the columns of StepWatch
     Column<Index> place;          // by row of BodyTable: row in the undivided world
-    Column<WatchProgress> watch;  // one row; a column, as message_of() needs it
+    Column<WatchProgress> watch;  // a single row, stored as a column because message_of() sends only columns
     Column<Real> valid_until;     // SearchState::body_valid_until
     WarmStartTable warm_start;
     RestingContactTable resting;
@@ -37,7 +38,7 @@ struct BodyRows {
     ContactTable contacts;  // contacts of the last step
     Column<FoundSelfCrossing> self_crossings;
     Column<std::uint64_t> enabled_pairs;  // RankState
-    // Records by row of BodyTable. Empty for rank 0, which keeps the records of all bodies.
+    // Records by row of BodyTable. Empty in a message to rank 0, which keeps the records of all bodies.
     std::vector<BodyRecord> records;
 };
 
@@ -45,9 +46,9 @@ struct BodyRows {
 using WantsPair = std::function<bool(std::uint64_t pair)>;
 
 /// Returns copies of the rows of marked bodies. The world must have no pending changes (WorldState::settle). The marked
-/// bodies must be complete units. `marked`: by row of BodyTable.
+/// bodies must form complete units (WholeWorld::unit). `marked`: by row of BodyTable.
 BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked, const WantsPair& wants_pair);
-/// Adds the records of the marked bodies to their rows, for a rank other than 0.
+/// Adds the records of the marked bodies to their rows. Rows for rank 0 need none, because rank 0 keeps all records.
 void copy_records(const Model& model, std::span<const std::uint8_t> marked, BodyRows& to);
 
 /// Removes all bodies that are not marked in `kept`, and adds bodies. The world must have no pending changes. Removes

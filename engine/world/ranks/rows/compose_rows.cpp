@@ -43,7 +43,7 @@ void append_row_with_lists(Table& from, std::size_t row, Table& to) {
     }
 }
 
-/// A single column in the form of a table, as free_column() needs it.
+/// Presents a single column as a table, because free_column() works on tables.
 struct ColumnTable {
     Column<Index>& column;
     void for_each_column(auto&& visit) { visit("", column); }

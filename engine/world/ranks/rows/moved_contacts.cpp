@@ -19,8 +19,8 @@ void copy_rows(AnyTable from, std::size_t count, auto&& wants, AnyTable to) {
         if (wants(row)) append_row(from, row, to);
 }
 
-/// Converts between rows of this rank and numbers that are valid on all ranks. These name a body by its row in the
-/// undivided world, node n of the first body by n, and node n of the second body by ~n.
+/// Converts rows of this rank to numbers that are valid on all ranks, and back. The number of a body is its row in the
+/// undivided world; the number of node n of the first body is n, of node n of the second body ~n.
 class PlacesOfContacts {
 public:
     PlacesOfContacts(const Model& model, std::span<const Index> place) : model_(model), place_(place) {}
@@ -109,7 +109,7 @@ void reorder(std::span<const std::size_t> order, AnyTable table) {
     }
 }
 
-/// Reorders the lists of rows like reorder(). Rows without a list get an empty one.
+/// Reorders `lists`, which has one list per row, like reorder(). Rows without a list get an empty one.
 void reorder_lists(std::span<const std::size_t> order, auto& lists) {
     auto old = std::move(lists);
     lists.clear();
@@ -197,7 +197,7 @@ void add_contacts(std::span<BodyRows> added, WorldState& world) {
     ContactTable& contacts = world.scratch.contacts;
     PairTable& pairs = cache.pairs;
     const auto everything = [](auto) { return true; };
-    pairs.candidates.resize(pairs.size());  // lists beyond the last row are spare memory
+    pairs.candidates.resize(pairs.size());  // removes lists beyond the last row, which are spare memory
     pairs.asleep_until.resize(pairs.size());
     pairs.leaf_pairs.resize(pairs.size());
     for (BodyRows& rows : added) {

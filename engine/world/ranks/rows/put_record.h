@@ -1,4 +1,4 @@
-// Values, lists and records of bodies in messages between ranks.
+// Messages between ranks that contain single values, lists or records of bodies.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ concept RowList = requires(List& list) {
     list.data();
 };
 
-/// Appends one value of plain data, or the number of the rows of a list and its rows.
+/// Appends a value of plain data, or a list: first its number of rows, then the rows.
 template <class T>
 void put_value(const T& value, RankMessage& message) {
     if constexpr (RowList<T>) {
@@ -40,7 +40,8 @@ void take_value(MailReader& message, T& value) {
     }
 }
 
-/// Appends a record to a message, without the surface that is drawn in place of the body. Only rank 0 draws bodies.
+/// Appends a record to a message, without the surface that is drawn in place of the body, because only rank 0 draws
+/// bodies.
 void put_record(const BodyRecord& record, RankMessage& message);
 /// Reads a record that put_record has written.
 BodyRecord take_record(MailReader& message);

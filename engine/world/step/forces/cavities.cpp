@@ -23,8 +23,8 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
             value(w.clock.time), value(p.lag), value(p.kick), outputs<CavityOutputs>(c, w.model.nodes), if_any);
 }
 
-/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]: the sum of
-/// the bounds for the filling and for the rotation of faces (not for implicit bodies). `p`: largest pressure [Pa].
+/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]: the bound
+/// for the filling plus, except for implicit bodies, the bound for the rotation of faces. `p`: largest pressure [Pa].
 /// `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
