@@ -85,7 +85,7 @@ std::string stiff_note(const ScenePlan& plan, const World& world, double steps, 
     const BodyPlan& body = plan.bodies[stiff.first];
     std::string text = mesh_of_body_text(plan, stiff.first);
     if (stiff.count > 1)
-        text += " and " + grouped(stiff.count - 1) + (stiff.count == 2 ? " more body" : " more bodies") + " like it";
+        text += " and " + grouped(stiff.count - 1) + (stiff.count == 2 ? " more body like it" : " more bodies like it");
     text += std::string(stiff.count > 1 ? " are" : " is") + " explicit, of material \"" +
             plan.materials[body.material].first + "\", and " + (stiff.count > 1 ? "need" : "needs") + " steps of " +
             with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " + short_text(others / stiff.step) +
