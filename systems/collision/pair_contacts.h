@@ -57,8 +57,8 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Distance of two features up to which their contact is computed [m]. If the distance is larger, it alone shows that
-/// they do not touch. `closing`: distance by which the partners may approach in this step [m].
+/// Limit [m]: features that are farther apart than this do not touch in this step, so their contact is not computed.
+/// `closing`: distance by which the partners may approach in this step [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }

@@ -146,7 +146,7 @@ struct StudyQuantity {
     Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();
     StudyVerdict verdict = StudyVerdict::not_measured;  // reliability
     std::string sentence{};                             // verdict in words
-    Real agree_until = infinity;  // time until which runs with shifted starts agree on this quantity [s]
+    Real agree_until = infinity;  // time until which runs whose start positions differ by rounding agree [s]
     // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
     std::vector<Real> run_values{}, run_errors{};
 };
@@ -195,8 +195,8 @@ struct StudySettings {
     std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
     int threads = 0;                         // number of threads of the study; 0: the number of cores
     // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Runs that do not
-    // fit are left out, the least important first. Empty: 15, or 5 s divided by the CPU time of that run if this is
-    // more.
+    // fit are left out, the least important first. Empty: 15, or more
+    // if the study then still takes less than 5 s.
     std::optional<double> budget{};
     // Folder in which each run is stored when it ends. A later study of the unchanged scene reads these runs instead of
     // making them again. Empty: no folder.

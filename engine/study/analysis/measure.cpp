@@ -103,9 +103,9 @@ struct StressGrowth {
                std::all_of(rates.end() - static_cast<std::ptrdiff_t>(levels), rates.end(),
                            [](Real rate) { return rate > least_rate; });
     }
-    /// True for a stress without a limit. A stress that follows h^-a grows by one constant factor per level. The factor
-    /// of a converging stress falls towards 1: per level, the exponent a is multiplied by 0.5 with order 1, and by 0.7
-    /// with order 1/2. A ratio above 0.75 therefore shows a singular stress.
+    /// True for a singular stress, which has no limit for finer meshes. Each level halves the edge length h, and
+    /// `rates` has the exponents a with which the stress grows, as h^-a, from level to level. For a singular stress
+    /// they stay equal. For a converging stress each is 0.5 (order 1) to 0.7 (order 1/2) times the previous one.
     bool is_singular() const {
         constexpr Real least_steadiness = 0.75;
         return grows(2) && rates.back() > least_steadiness * rates[rates.size() - 2];

@@ -230,7 +230,8 @@ private:
         append_row<Share>(plan_.volumetric_around, volumetric);
     }
 
-    /// Appends the factors of a linear fit to the donors of one material, times `share`. If the donors do not suffice,
+    /// A linear fit to the values of the donors of one material extrapolates to the node. Appends the factors of these
+    /// values, times `share`. If the donors do not suffice,
     /// the factors of the mean over the elements of this material are appended.
     void extrapolate(Index n, Index material, Real share, std::vector<Share>& donors, std::vector<Share>& strained,
                      std::vector<Share>& volumetric) {

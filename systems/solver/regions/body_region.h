@@ -1,4 +1,5 @@
-// Regions that need the operator with 3x3 blocks (needs_blocks in region_blocks.h; docs/methods/rigid_bodies.md 3).
+// Regions that need the operator with 3x3 blocks: they touch rigid or implicit bodies, have a cable, or have friction
+// that depends on the direction (needs_blocks in region_blocks.h; docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include "systems/solver/operators/body_operator.h"

@@ -106,11 +106,11 @@ struct RegionMemory {
     // if the list now holds another node at this index.
     Column<Index> place;
     // by region
-    Column<Real> cost;           // predicted time of the solve [microseconds]
-    Column<Real> cost_parts;     // partial sums of `cost` over the regions
-    RegionHistoryTable history;  // average numbers of sweeps of the regions of the last step
-    // `history` of this step's regions; remember_regions() adds this step and swaps the tables
-    RegionHistoryTable present;
+    Column<Real> cost;        // predicted time of the solve [microseconds]
+    Column<Real> cost_parts;  // partial sums of `cost` over the regions
+    // Average numbers of sweeps per region: up to the last step, and for the regions of this step. After the solve,
+    // remember_regions() adds the sweeps of this step to `present` and swaps the two tables.
+    RegionHistoryTable history, present;
     // by task
     Column<RegionTask> task;
     LargeRegions large;
