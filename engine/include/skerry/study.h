@@ -195,8 +195,7 @@ struct StudySettings {
     std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
     int threads = 0;                         // number of threads of the study; 0: the number of cores
     // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Runs that do not
-    // fit are left out, the least important first. Empty: 15, or more
-    // if the study then still takes less than 5 s.
+    // fit are left out, the least important first. Empty: 15, or more if the study then still takes less than 5 s.
     std::optional<double> budget{};
     // Folder in which each run is stored when it ends. A later study of the unchanged scene reads these runs instead of
     // making them again. Empty: no folder.
