@@ -247,7 +247,7 @@ TEST_CASE("plasticity is refused where it does not act, and only its values chan
     } catch (const SceneError& error) {
         CHECK(error.complaint().found == "no plasticity");
         CHECK(error.complaint().expected == "plasticity");
-        CHECK_THAT(error.complaint().hint, Contains("add a new material"));
+        CHECK_THAT(error.complaint().hint, Contains("add a body with a new material"));
     }
     std::vector<Vec3> shape;
     for (const Vec3& x : mesh.nodes) shape.emplace_back(axial(0.3, -0.14) * x);
