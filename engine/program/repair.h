@@ -39,9 +39,9 @@ struct RepairedMesh {
 /// 4. If no new tetrahedra are better than the old ones but nodes were split, the old tetrahedra are returned with
 /// the split nodes.
 ///
-/// `what`: name of the mesh in errors. `progress` is called many times a second with a description of the current
-/// activity. Throws SceneError if the boundary of the mesh is not a closed manifold, or if the mesh has several labels
-/// or unconnected parts.
+/// Errors name the mesh by `what`. `progress` is called many times a second with a description of the current activity.
+/// Throws SceneError if the boundary of the mesh is not a closed manifold, or if the mesh has several labels or
+/// unconnected parts.
 RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
                     const std::function<void(const std::string&)>& progress);
 

@@ -17,12 +17,12 @@ struct ThinnedSurface {
 };
 
 /// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips one of its edges.
-/// Of all possible changes it applies the one that maximises the smallest altitude of the changed triangles. Triangles
-/// that no change improves are left, and the surface is unchanged elsewhere. Every change preserves the topology (link
-/// condition: Dey, Edelsbrunner, Guha, Nekhayev, Topology preserving edge contraction, 1999) and the orientation of
-/// triangles. The old and the new surface stay within the tolerance of each other. The surface must be closed, with two
-/// triangles at every edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness
-/// of the body. The result is deterministic.
+/// The change that maximises the smallest altitude of the changed triangles is applied. Triangles that no change
+/// improves are left, and the surface is unchanged elsewhere. Every change preserves the topology (link condition: Dey,
+/// Edelsbrunner, Guha, Nekhayev, Topology preserving edge contraction, 1999) and the orientation of triangles. The old
+/// and the new surface stay within the tolerance of each other. The surface must be closed, with two triangles at every
+/// edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness of the body. The
+/// result is deterministic.
 ThinnedSurface thin_knots(const SurfaceMesh& surface, const KnotSettings& settings);
 
 }  // namespace skerry::mesh
