@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <barrier>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
+#include "components/row_memory.h"
 #include "profiling/measure.h"
 
 // The build generates peak_loops.inc with a line SKERRY_EACH(name) for the table of each instruction set.
@@ -19,15 +21,20 @@ namespace {
 
 constexpr double sample_seconds = 1e-3;  // least duration of one timed sample [s]
 
-/// Numbers that begin at a cache line.
-struct Array {
-    struct alignas(64) Line {
-        double number[8];
-    };
-    std::vector<Line> lines;
+/// Numbers in memory as columns of the library have it: from the start of a cache line, and on large pages if the
+/// system has them. With pages of 4 kB, translation of addresses would limit the bandwidth.
+class Array {
+public:
+    explicit Array(std::size_t count) : rows_(allocate_rows(count * sizeof(double))) {
+        std::uninitialized_fill_n(data(), count, 1.0);
+    }
+    double* data() const { return static_cast<double*>(rows_.get()); }
 
-    explicit Array(std::size_t count) : lines((count + 7) / 8, Line{{1, 1, 1, 1, 1, 1, 1, 1}}) {}
-    double* data() { return lines.front().number; }
+private:
+    struct Free {
+        void operator()(void* rows) const { free_rows(rows); }
+    };
+    std::unique_ptr<void, Free> rows_;
 };
 
 /// Best rate of all workers together, over the repeats. work_of() prepares the work of one worker, which is then called
