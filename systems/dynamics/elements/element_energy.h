@@ -28,8 +28,8 @@ struct ElementFields {
 };
 
 /// Writes the fields of the elements in some blocks of a range. `requested`: numbers of the blocks to evaluate,
-/// ascending, counted from blocks.begin. Block requested[i] is written to fields[8 i + lane]. The values do not depend on
-/// which other blocks are requested.
+/// ascending, counted from blocks.begin. Block requested[i] is written to fields[8 i + lane]. The values do not depend
+/// on which other blocks are requested.
 void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> requested,
                     std::span<const Vec3> position, std::span<ElementFields> fields);
 

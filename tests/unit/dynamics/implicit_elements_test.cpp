@@ -370,9 +370,9 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
         // The limit on the nodes of a cluster acts likewise.
         test::ElasticBody& of = box.body;
         goal.inverse_mass = of.inverse_mass;
-        goal.most_nodes = cluster_sizes(of.inputs(), of.blocks, of.elements.implicit_modulus, of.inverse_mass).largest;
+        goal.max_nodes = cluster_sizes(of.inputs(), of.blocks, of.elements.implicit_modulus, of.inverse_mass).largest;
         CHECK(!search.find(goal).too_many);
-        --goal.most_nodes;
+        --goal.max_nodes;
         CHECK(search.find(goal).too_many);
     }
 }
