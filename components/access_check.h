@@ -59,22 +59,22 @@ private:
 class CopyCheck {
 public:
     CopyCheck() = default;
-    CopyCheck(const CopyCheck& other) { other.note(false); }
-    CopyCheck(CopyCheck&& other) noexcept { other.note(true); }
+    CopyCheck(const CopyCheck& other) { other.report(false); }
+    CopyCheck(CopyCheck&& other) noexcept { other.report(true); }
     CopyCheck& operator=(const CopyCheck& other) {
-        other.note(false);
-        note(true);
+        other.report(false);
+        report(true);
         return *this;
     }
     CopyCheck& operator=(CopyCheck&& other) noexcept {
-        other.note(true);
-        note(true);
+        other.report(true);
+        report(true);
         return *this;
     }
     ~CopyCheck() = default;
 
 private:
-    void note(bool writes) const { check_access(this, 1, writes); }
+    void report(bool writes) const { check_access(this, 1, writes); }
 };
 
 #else

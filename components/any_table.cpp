@@ -44,9 +44,9 @@ void AnyTable::resize(std::size_t rows) const {
         if (info.has_row_each) column(info).resize(rows);
 }
 
-void AnyTable::erase(std::span<const Range> gone) const {
+void AnyTable::erase(std::span<const Range> erased) const {
     for (const ColumnInfo& info : columns_)
-        if (info.has_row_each) column(info).erase(gone);
+        if (info.has_row_each) column(info).erase(erased);
 }
 
 template <class Table>

@@ -26,7 +26,7 @@ public:
     /// Sets the number of rows. New rows are value-initialised.
     void resize(std::size_t count) const;
     /// Removes ranges of rows. Preconditions: see Column::erase.
-    void erase(std::span<const Range> gone) const { changed().erase(gone, type_->bytes); }
+    void erase(std::span<const Range> erased) const { changed().erase(erased, type_->bytes); }
     bool is(const void* column) const { return memory_ == column; }
 
 private:
@@ -71,7 +71,7 @@ public:
     }
     /// Resizes all columns that have one row per row of the table.
     void resize(std::size_t rows) const;
-    void erase(std::span<const Range> gone) const;
+    void erase(std::span<const Range> erased) const;
 
 private:
     const char* name_;

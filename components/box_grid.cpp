@@ -10,18 +10,18 @@ namespace skerry {
 /// makes the exponent too small: a length of at least 2^n is never rounded to less, because 2^n is representable.
 BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
     // Limits of the edge length [m]. They ensure that the edges of cells are finite and above zero.
-    constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;
+    constexpr Real min_extent = std::numeric_limits<Real>::min(), max_extent = 0x1p1000;
     int level = 0;
-    std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), least, most), &level);
+    std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), min_extent, max_extent), &level);
     return level;
 }
 
 /// Cell that contains the point. Despite rounding errors, cell numbers increase monotonically with the coordinate: the
 /// greater of two coordinates never gets the smaller number.
 BoxGrid::Cell BoxGrid::cell_at(Level level, const Vec3& point, Real edge) {
-    constexpr Real most = 0x1p62;  // greatest cell number; points further from the origin also get this number
+    constexpr Real max_cell = 0x1p62;  // greatest cell number; points further from the origin also get this number
     const auto number = [&](Real coordinate) {
-        return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / edge), -most, most));
+        return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / edge), -max_cell, max_cell));
     };
     return {level, number(point[0]), number(point[1]), number(point[2])};
 }

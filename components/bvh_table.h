@@ -33,17 +33,17 @@ using LeafTriangles = std::array<Index, leaf_lanes>;
 /// Mesh nodes of the triangles of a leaf, copied from TriangleTable. Computing the box of a leaf and gathering its
 /// triangles then need not read TriangleTable.
 struct LeafNodes {
-    static constexpr std::size_t most = 3 * leaf_lanes;
+    static constexpr std::size_t capacity = 3 * leaf_lanes;
     // Mesh nodes of the three corners of each triangle, by lane; lanes without a triangle repeat the first triangle.
     std::array<std::array<Index, leaf_lanes>, 3> corner;
     Index count = 0;
-    std::array<Index, most> node{};  // the mesh nodes of all triangles of the leaf, ascending, each listed once
+    std::array<Index, capacity> node{};  // the mesh nodes of all triangles of the leaf, ascending, each listed once
 };
 
 /// Edges and vertices that the triangles of a leaf own; each edge or vertex has one owner (TriangleTable). A search
 /// reads this copy instead of TriangleTable.
 struct LeafFeatures {
-    static constexpr std::size_t most = 3 * leaf_lanes;
+    static constexpr std::size_t capacity = 3 * leaf_lanes;
     struct Edge {
         Index row;  // row of EdgeTable
         std::array<Index, 2> node;
@@ -53,8 +53,8 @@ struct LeafFeatures {
         Index node;
     };
     Index edge_count = 0, point_count = 0;
-    std::array<Edge, most> edge{};
-    std::array<Point, most> point{};
+    std::array<Edge, capacity> edge{};
+    std::array<Point, capacity> point{};
 };
 
 /// Boxes and topology of the tree nodes. Model::rebuild_outlines derives BvhTable and BvhLeafTable.

@@ -46,12 +46,12 @@ struct CableTable {
     /// Erases the keys and the points of a cable.
     void erase_keys_of(std::size_t cable) {
         erase_keys(keys, key, cable);
-        const Range gone = points[cable];
-        for (Range& of : points.span())
-            if (of.begin >= gone.end) of = {of.begin - gone.size(), of.end - gone.size()};
+        const Range erased = points[cable];
+        for (Range& other : points.span())
+            if (other.begin >= erased.end) other = {other.begin - erased.size(), other.end - erased.size()};
         points[cable] = {};
-        if (gone.size() == 0) return;
-        const std::span<const Range> ranges(&gone, 1);
+        if (erased.size() == 0) return;
+        const std::span<const Range> ranges(&erased, 1);
         anchor.body.erase(ranges);
         anchor.collider.erase(ranges);
         anchor.point.erase(ranges);
@@ -89,7 +89,7 @@ struct CableBlock {
     bool solved;
     bool by_length;  // true: the greatest length is prescribed; false: the tension of the first segment
     // If by_length: greatest rate of the length [m/s]. Otherwise: impulse of the tension of the first segment [N s].
-    Real wanted;
+    Real prescribed;
     Real released;  // greatest length at the end of the step [m]
     // index of the first entry of the block's mobility matrix in the array of all these matrices in the region solver
     Index mobility;

@@ -62,13 +62,13 @@ struct CavityTable {
     /// Erases the keys and the faces of one cavity.
     void erase_keys_of(std::size_t row) {
         erase_keys(keys, key, row);
-        const Range gone = faces[row];
-        const auto begin = static_cast<std::size_t>(gone.begin), count = static_cast<std::size_t>(gone.size());
+        const Range erased = faces[row];
+        const auto begin = static_cast<std::size_t>(erased.begin), count = static_cast<std::size_t>(erased.size());
         face.erase(begin, count);
         corners.erase(begin, count);
         faces[row] = {};
         for (Range& other : faces)
-            if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+            if (other.begin > erased.begin) other = {other.begin - erased.size(), other.end - erased.size()};
     }
 
     /// Visits the columns with one row per cavity.

@@ -81,7 +81,7 @@ public:
     /// Removes `count` rows, beginning with row `first`. Later rows move to lower indices and keep their order.
     void erase(std::size_t first, std::size_t count) { changed().erase(first, count, sizeof(T)); }
     /// Removes ranges of rows in ascending order, in one pass. Parts of a range beyond the last row are ignored.
-    void erase(std::span<const Range> gone) { changed().erase(gone, sizeof(T)); }
+    void erase(std::span<const Range> erased) { changed().erase(erased, sizeof(T)); }
     void swap(Column& other) noexcept { changed().swap(other.changed()); }
 
     std::span<T> span() { return {data(), memory_.size()}; }

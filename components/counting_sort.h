@@ -9,21 +9,21 @@
 namespace skerry {
 
 /// Stable sort of rows by the integer key number_of(row), which lies between 0 and `end` - 1. To sort by several keys,
-/// sort by the least significant key first. `spare` is working memory. Several sorts should share it, because accessing
-/// newly allocated pages costs as much as a sort.
+/// sort by the least significant key first. `buffer` is working memory. Several sorts should share it, because
+/// accessing newly allocated pages costs as much as a sort.
 template <class Row>
-void counting_sort(std::vector<Row>& rows, std::vector<Row>& spare, Index end, auto&& number_of) {
-    std::vector<std::size_t> place(static_cast<std::size_t>(end) + 1, 0);
-    for (const Row& row : rows) ++place[static_cast<std::size_t>(number_of(row)) + 1];
-    for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
-    spare.resize(rows.size());
-    for (const Row& row : rows) spare[place[static_cast<std::size_t>(number_of(row))]++] = row;
-    rows.swap(spare);
+void counting_sort(std::vector<Row>& rows, std::vector<Row>& buffer, Index end, auto&& number_of) {
+    std::vector<std::size_t> next(static_cast<std::size_t>(end) + 1, 0);
+    for (const Row& row : rows) ++next[static_cast<std::size_t>(number_of(row)) + 1];
+    for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+    buffer.resize(rows.size());
+    for (const Row& row : rows) buffer[next[static_cast<std::size_t>(number_of(row))]++] = row;
+    rows.swap(buffer);
 }
 template <class Row>
 void counting_sort(std::vector<Row>& rows, Index end, auto&& number_of) {
-    std::vector<Row> spare;
-    counting_sort(rows, spare, end, number_of);
+    std::vector<Row> buffer;
+    counting_sort(rows, buffer, end, number_of);
 }
 
 }  // namespace skerry

@@ -23,7 +23,7 @@ struct ImplicitCoupling {
     // length h of this step and the time t from the start of the long step to the end of this step
     // (docs/methods/implicit_bodies.md 9).
     Column<Mat3> turn, impulse_turn;
-    Column<Index> place;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
+    Column<Index> touched_index;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
 
     std::size_t numbers(std::size_t body) const { return 3 * nodes[body].size(); }
     /// The three columns of `response` for an impulse on node number `at` of `nodes`, one column after the other.
@@ -32,11 +32,12 @@ struct ImplicitCoupling {
     }
     /// Velocity of node number `to` of `nodes` per unit impulse on node number `from`, in the frame of the mesh [1/kg].
     Mat3 block_in_frame(std::size_t body, Index to, Index from) const {
-        const std::span<const Real> of = columns(body, from);
+        const std::span<const Real> column_numbers = columns(body, from);
         Mat3 block;
         for (Index c = 0; c < 3; ++c)
             for (Index r = 0; r < 3; ++r)
-                block(r, c) = of[static_cast<std::size_t>(c) * numbers(body) + static_cast<std::size_t>(3 * to + r)];
+                block(r, c) =
+                    column_numbers[static_cast<std::size_t>(c) * numbers(body) + static_cast<std::size_t>(3 * to + r)];
         return block;
     }
     Mat3 to_world(std::size_t body, const Mat3& in_frame) const { return turn[body] * in_frame * impulse_turn[body]; }

@@ -29,11 +29,11 @@ bool changes(std::span<const TimeKey> keys, Real t, Real h);
 /// Erases the list of one row from columns that contain the lists of all rows. `range`: range of the list of each row.
 template <class... T>
 void erase_lists(Column<Range>& range, std::size_t row, Column<T>&... lists) {
-    const Range gone = range[row];
-    (lists.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size())), ...);
+    const Range erased = range[row];
+    (lists.erase(static_cast<std::size_t>(erased.begin), static_cast<std::size_t>(erased.size())), ...);
     range[row] = {};
     for (Range& other : range)
-        if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+        if (other.begin > erased.begin) other = {other.begin - erased.size(), other.end - erased.size()};
 }
 
 /// Erases the list of keys of row `row`. `range`: range in `key` of the list of each row.

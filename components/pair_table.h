@@ -39,7 +39,7 @@ template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;
 
 /// One candidate of PairTable: row of its pair, and index in the candidate list of this pair.
-struct CandidatePlace {
+struct CandidateIndex {
     Index pair;
     Index candidate;
 };
@@ -99,7 +99,7 @@ struct PairTable {
     Column<Index> second;  // row of BodyTable, or of ColliderTable
     // 1: neither partner moves in this step. No contacts are searched for the pair, and its last contacts remain valid.
     Column<std::uint8_t> idle;
-    Column<Index> looked_at;   // number of candidates to test; 0 for an idle pair
+    Column<Index> test_count;  // number of candidates to test; 0 for an idle pair
     Column<Vec3> frame_apart;  // MovingFrame::position of the first body minus that of the second body [m]
     // length of the path of the first body's frame relative to the second body's frame since the pair was found [m]
     Column<Real> frame_path;
@@ -118,7 +118,7 @@ struct PairTable {
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
     // 1: the candidate list was made at the positions at the start of this step. The list then stays valid longer:
     // displacements of the bodies in their frames before the step do not count (is_beyond_list).
-    Column<std::uint8_t> fresh;
+    Column<std::uint8_t> rebuilt;
     // State of the surfaces at the last search; not used for a body and an analytic collider. Surfaces that are apart
     // stay apart, because find_crossings prevents them from crossing.
     Column<PairState> state;
@@ -131,7 +131,7 @@ struct PairTable {
     Column<std::int64_t> work;
     // Start of each block, and the end of the last one. A block is a part of the concatenated candidate lists that one
     // task of find_contacts tests.
-    Column<CandidatePlace> block;
+    Column<CandidateIndex> block;
     Column<std::size_t> block_first;  // by block: row of ContactTable for its first contact
     // For each block of find_contacts: contacts found in this step, in candidate order.
     std::vector<Column<ContactRow>> found;
@@ -155,12 +155,12 @@ struct PairTable {
         visit("frame_apart", frame_apart, ColumnRole::memory);
         visit("frame_path", frame_path, ColumnRole::memory);
         visit("idle", idle, ColumnRole::scratch);
-        visit("looked_at", looked_at, ColumnRole::scratch);
+        visit("test_count", test_count, ColumnRole::scratch);
         visit("travel", travel, ColumnRole::scratch);
         visit("travel_bound", travel_bound, ColumnRole::scratch);
         visit("closing", closing, ColumnRole::scratch);
         visit("longer_motion", longer_motion, ColumnRole::scratch);
-        visit("fresh", fresh, ColumnRole::scratch);
+        visit("rebuilt", rebuilt, ColumnRole::scratch);
     }
     std::size_t size() const { return key.size(); }
 };
@@ -196,7 +196,7 @@ struct CrossingTable {
     // true: find_crossings stopped the last attempt at the step, so that candidate lists are extended
     bool beyond_lists = false;
     // True: crossings in this attempt are permitted, and their pairs are marked as overlapping.
-    bool last_try = false;
+    bool last_attempt = false;
     std::uint64_t tested = 0;       // number of feature pairs tested since the world was made
     std::uint64_t hits = 0;         // number of crossings that were prevented
     std::uint64_t let_through = 0;  // number of crossings that were permitted because no attempt could prevent them
@@ -252,7 +252,7 @@ struct SearchMemory {
     Column<Index> old_list;  // by index of a candidate list: index of the old list whose memory it takes over
     // For each previous candidate list: 1 if its pair still exists and keeps the list; 0 if a new pair may reuse its
     // memory.
-    Column<std::uint8_t> given_away;
+    Column<std::uint8_t> list_is_kept;
     // The next three columns are temporary storage used while the lists of PairTable are reordered.
     std::vector<Column<Candidate>> candidates;
     std::vector<Column<Real>> asleep_until;
@@ -287,13 +287,13 @@ struct SearchState {
     void forget_body(std::size_t row) {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
     }
-    /// Ends an attempt at a step. If the step was committed (`taken`), the speeds of all bodies are known. Otherwise
-    /// the speeds of bodies that were forgotten at the start of the step are still unknown, so these bodies are marked
-    /// as forgotten again.
-    void end_step(bool taken) {
+    /// Ends an attempt at a step. If the step was `committed`, the speeds of all bodies are known.
+    /// Otherwise the speeds of bodies that were forgotten at the start of the step are still unknown, so these bodies
+    /// are marked as forgotten again.
+    void end_step(bool committed) {
         if (!memory.any_unmeasured) return;
         for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)
-            if (!taken && memory.body_unmeasured[row]) forget_body(row);
+            if (!committed && memory.body_unmeasured[row]) forget_body(row);
         memory.any_unmeasured = false;
     }
     void forget_collider(std::size_t row) {

@@ -29,25 +29,25 @@ auto rows_of(auto& column, Range rows) requires requires {
 }
 { return rows_of(column.span(), rows); }
 
-/// New index of `row` after the ascending ranges `gone` have been removed. If `row` itself is removed, this is the new
-/// index of the next remaining row.
-inline Index row_without(Index row, std::span<const Range> gone) {
+/// New index of `row` after the ascending ranges `erased` have been removed. If `row` itself is removed, this is the
+/// new index of the next remaining row.
+inline Index row_without(Index row, std::span<const Range> erased) {
     Index below = 0;
-    for (const Range& rows : gone) {
+    for (const Range& rows : erased) {
         if (rows.begin >= row) break;
         below += std::min(rows.end, row) - rows.begin;
     }
     return row - below;
 }
 
-/// Appends the range `rows` to the ascending list `gone` of removed ranges. If `rows` begins where the last range ends,
-/// the two ranges are merged. `rows` must come after all listed rows.
-void append_gone(Range rows, auto& gone) {
+/// Appends the range `rows` to the ascending list `erased` of removed ranges. If `rows` begins where the last range
+/// ends, the two ranges are merged. `rows` must come after all listed rows.
+void append_gone(Range rows, auto& erased) {
     if (rows.size() == 0) return;
-    if (!gone.empty() && gone.back().end == rows.begin)
-        gone.back().end = rows.end;
+    if (!erased.empty() && erased.back().end == rows.begin)
+        erased.back().end = rows.end;
     else
-        gone.push_back(rows);
+        erased.push_back(rows);
 }
 
 }  // namespace skerry

@@ -14,8 +14,8 @@ struct RestingContactTable {
 
     void for_each_column(auto&& visit) {
         contact.for_each_column([&](const char* name, auto& column, ColumnRole) {
-            const void* const place = &column;
-            const bool starts = place == &contact.key || place == &contact.normal || place == &contact.impulse;
+            const void* const address = &column;
+            const bool starts = address == &contact.key || address == &contact.normal || address == &contact.impulse;
             visit(name, column, starts ? ColumnRole::state : ColumnRole::memory);
         });
         visit("step", step, ColumnRole::state);

@@ -15,26 +15,26 @@ namespace skerry {
 namespace {
 
 template <class T>
-T copy_of(const std::byte* place) {
+T copy_of(const std::byte* address) {
     T number;
-    std::memcpy(&number, place, sizeof number);
+    std::memcpy(&number, address, sizeof number);
     return number;
 }
 
 }  // namespace
 
-std::int64_t number_at(const std::byte* place, NumberType type) {
+std::int64_t number_at(const std::byte* address, NumberType type) {
     switch (type) {
         case NumberType::int32:
-            return copy_of<std::int32_t>(place);
+            return copy_of<std::int32_t>(address);
         case NumberType::uint8:
-            return copy_of<std::uint8_t>(place);
+            return copy_of<std::uint8_t>(address);
         case NumberType::uint16:
-            return copy_of<std::uint16_t>(place);
+            return copy_of<std::uint16_t>(address);
         case NumberType::uint32:
-            return copy_of<std::uint32_t>(place);
+            return copy_of<std::uint32_t>(address);
         case NumberType::uint64:
-            return static_cast<std::int64_t>(copy_of<std::uint64_t>(place));
+            return static_cast<std::int64_t>(copy_of<std::uint64_t>(address));
         case NumberType::real:
         case NumberType::single:
             break;

@@ -73,13 +73,14 @@ void RowMemory::swap(RowMemory& other) noexcept {
     std::swap(capacity_, other.capacity_);
 }
 
-void RowMemory::erase(std::span<const Range> gone, std::size_t row_bytes) {
-    const auto place = [&](Index row) { return std::min(static_cast<std::size_t>(row), size_); };
-    if (gone.empty() || place(gone.front().begin) == size_) return;
+void RowMemory::erase(std::span<const Range> erased, std::size_t row_bytes) {
+    const auto clamped = [&](Index row) { return std::min(static_cast<std::size_t>(row), size_); };
+    if (erased.empty() || clamped(erased.front().begin) == size_) return;
     auto* const rows = static_cast<std::byte*>(rows_);
-    std::size_t to = place(gone.front().begin);
-    for (std::size_t i = 0; i < gone.size(); ++i) {
-        const std::size_t from = place(gone[i].end), end = i + 1 < gone.size() ? place(gone[i + 1].begin) : size_;
+    std::size_t to = clamped(erased.front().begin);
+    for (std::size_t i = 0; i < erased.size(); ++i) {
+        const std::size_t from = clamped(erased[i].end),
+                          end = i + 1 < erased.size() ? clamped(erased[i + 1].begin) : size_;
         if (from == end) continue;
         std::memmove(rows + to * row_bytes, rows + from * row_bytes, (end - from) * row_bytes);
         to += end - from;

@@ -44,7 +44,7 @@ public:
     void swap(RowMemory& other) noexcept;
     /// Removes ascending ranges of rows. Parts of a range beyond the last row are ignored. Later rows close the gaps
     /// and keep their order; each row is moved at most once.
-    void erase(std::span<const Range> gone, std::size_t row_bytes);
+    void erase(std::span<const Range> erased, std::size_t row_bytes);
     void erase(std::size_t first, std::size_t count, std::size_t row_bytes);
 
 private:

@@ -23,7 +23,7 @@ inline constexpr std::size_t bytes_of(NumberType type) {
 }
 
 /// Returns the integer at an address. Throws std::logic_error for reals of either precision.
-std::int64_t number_at(const std::byte* place, NumberType type);
+std::int64_t number_at(const std::byte* address, NumberType type);
 
 struct Member;
 
@@ -142,14 +142,15 @@ inline constexpr RowType row_type = row_type_detail::describe<T>();
 template <class S, class T>
 std::size_t member_offset(T S::*member) {
     alignas(S) static const std::byte memory[sizeof(S)]{};
-    const auto* const place = &(reinterpret_cast<const S*>(memory)->*member);
-    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(place) - memory);
+    const auto* const address = &(reinterpret_cast<const S*>(memory)->*member);
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(address) - memory);
 }
 
 /// A member of a struct, as an entry of MembersOf<S>::list().
 struct Member {
     template <class S, class T>
-    Member(const char* its_name, T S::*place) : name(its_name), offset(member_offset(place)), type(&row_type<T>) {}
+    Member(const char* member_name, T S::*address)
+        : name(member_name), offset(member_offset(address)), type(&row_type<T>) {}
 
     const char* name;
     std::size_t offset;  // offset of the member from the start of the struct [bytes]

@@ -72,9 +72,9 @@ struct SharedUnionFind {
     /// Records `item` for the set with the root `root`; first_item() returns the smallest recorded item. Call it only
     /// after all joins.
     void begin_with(Index root, Index item) {
-        const std::uint64_t mine = stamped(static_cast<Index>(~static_cast<std::uint32_t>(item)));
+        const std::uint64_t new_word = stamped(static_cast<Index>(~static_cast<std::uint32_t>(item)));
         std::uint64_t word = load(node[root].first);
-        while (word < mine && !exchange(node[root].first, word, mine)) continue;
+        while (word < new_word && !exchange(node[root].first, word, new_word)) continue;
     }
 
     /// The smallest item passed to begin_with for the set with this root, or no_index.

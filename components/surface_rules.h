@@ -73,11 +73,11 @@ struct SurfaceSetTable {
         return rows_of(member.span(), members[set]);
     }
     void erase_members_of(std::size_t set) {
-        const Range gone = members[set];
-        member.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+        const Range erased = members[set];
+        member.erase(static_cast<std::size_t>(erased.begin), static_cast<std::size_t>(erased.size()));
         members[set] = {};
         for (Range& other : members)
-            if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+            if (other.begin > erased.begin) other = {other.begin - erased.size(), other.end - erased.size()};
     }
 
     /// Visits the columns with one row per set. The column `member` is visited by for_each_column only.

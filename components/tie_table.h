@@ -87,13 +87,13 @@ struct TieTable {
 
 /// Removes the tied nodes of a tie.
 inline void TieTable::erase_keys_of(std::size_t tie) {
-    const Range gone = nodes[tie];
+    const Range erased = nodes[tie];
     for_each_node_column([&](const char*, auto& column, ColumnRole) {
-        column.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+        column.erase(static_cast<std::size_t>(erased.begin), static_cast<std::size_t>(erased.size()));
     });
     nodes[tie] = {};
     for (Range& other : nodes)
-        if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+        if (other.begin > erased.begin) other = {other.begin - erased.size(), other.end - erased.size()};
 }
 
 /// One row per tied node that takes part in the contact problem of a step. While regions are solved, ContactTable

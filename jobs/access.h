@@ -65,17 +65,17 @@ public:
 
     template <class T>
     std::span<const T> read(const Column<T>& column) const {
-        note(column, Use::read);
+        record(column, Use::read);
         return column.span();
     }
     template <class T>
     RaggedView<T> read(const Ragged<T>& ragged) const {
-        note(ragged, Use::read);
+        record(ragged, Use::read);
         return ragged.view();
     }
     template <Resource T>
     const T& read(const T& object) const {
-        note(object, Use::read);
+        record(object, Use::read);
         return object;
     }
     /// Declares a read of a table except for one of its columns, which another stage may write at the same time.
@@ -91,31 +91,31 @@ public:
     }
     template <class T>
     std::span<T> write(Column<T>& column) const {
-        note(column, Use::write);
+        record(column, Use::write);
         return column.span();
     }
     /// Declares a write of an entire object, for stages that add rows to the object or replace it.
     template <Resource T>
     requires(!std::is_const_v<T>) T& make(T& object) const {
-        note(object, Use::write);
+        record(object, Use::write);
         return object;
     }
     template <Resource T>
     const T& value(const T& object) const {
-        note(object, Use::value);
+        record(object, Use::value);
         return object;
     }
 
-    /// Returns an empty span unless `wanted` is true. The access is declared in both cases.
+    /// Returns an empty span unless `condition` is true. The access is declared in both cases.
     template <class T>
-    std::span<const T> read_if(bool wanted, const Column<T>& column) const {
+    std::span<const T> read_if(bool condition, const Column<T>& column) const {
         const std::span<const T> rows = read(column);
-        return wanted ? rows : std::span<const T>();
+        return condition ? rows : std::span<const T>();
     }
     template <class T>
-    std::span<T> write_if(bool wanted, Column<T>& column) const {
+    std::span<T> write_if(bool condition, Column<T>& column) const {
         const std::span<T> rows = write(column);
-        return wanted ? rows : std::span<T>();
+        return condition ? rows : std::span<T>();
     }
 
     template <Resource T>
@@ -125,7 +125,7 @@ public:
 
 private:
     template <class T>
-    void note(const T& object, Use use) const {
+    void record(const T& object, Use use) const {
         if (!list_) return;
         const auto begin = reinterpret_cast<std::uintptr_t>(std::addressof(object));
         list_->push_back({begin, begin + sizeof(T), use});

@@ -150,9 +150,9 @@ private:
     void wait_for_work(std::unique_lock<std::mutex>& lock) {
         const std::uint64_t seen = announced_;
         lock.unlock();
-        const bool news = spin_until(may_spin_, [&] { return announced_ != seen; });
+        const bool found_work = spin_until(may_spin_, [&] { return announced_ != seen; });
         lock.lock();
-        if (news) return;
+        if (found_work) return;
         ++sleepers_;
         work_announced_.wait(lock, [&] { return announced_ != seen; });
         --sleepers_;
@@ -171,17 +171,17 @@ private:
     }
 
     void close(OpenJob& open) {
-        const auto deserted = [&] { return open.helpers.load(std::memory_order_acquire) == 0; };
+        const auto all_helpers_left = [&] { return open.helpers.load(std::memory_order_acquire) == 0; };
         std::unique_lock lock(mutex_);
         OpenJob** link = &open_;
         while (*link != &open) link = &(*link)->next;
         *link = open.next;
-        if (deserted()) return;
+        if (all_helpers_left()) return;
         lock.unlock();
-        if (spin_until(may_spin_, deserted)) return;
+        if (spin_until(may_spin_, all_helpers_left)) return;
         lock.lock();
         open.owner_sleeps = true;
-        helpers_left_.wait(lock, deserted);
+        helpers_left_.wait(lock, all_helpers_left);
     }
 
     void spawn(Index stage) {

@@ -18,9 +18,9 @@ void Team::wait_until(Ready&& ready) const {
     // Number of pauses before the thread yields; 50,000 pauses take 2 ms. A yield gives up the core for a time slice of
     // about this length, which is too long for a wait of a microsecond. If there are more workers than cores, the
     // thread yields early, because the thread for which it waits may need the core.
-    const int patience = may_spin_ ? 50000 : 20;
+    const int max_pauses = may_spin_ ? 50000 : 20;
     for (int i = 0; !ready(); ++i) {
-        if (i < patience) {
+        if (i < max_pauses) {
             pause_briefly();
         } else {
             std::this_thread::yield();
@@ -142,8 +142,8 @@ void Team::take_part(const Job& job, Index member) {
         take_blocks(job, begin + share, own_end);
         // Usually the other workers are about to finish. Reading their claims would move the cache lines away from
         // them. This worker therefore waits a little, and then helps only workers that are late.
-        constexpr int hesitation = 40;  // number of pauses, 2 us in total
-        for (int i = 0; i < hesitation && done_.load(std::memory_order_acquire) < end; ++i) pause_briefly();
+        constexpr int short_pauses = 40;  // number of pauses, 2 us in total
+        for (int i = 0; i < short_pauses && done_.load(std::memory_order_acquire) < end; ++i) pause_briefly();
         if (done_.load(std::memory_order_acquire) >= end) continue;
         take_blocks(job, own_end, end);
         take_blocks(job, begin, begin + share);

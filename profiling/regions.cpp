@@ -33,7 +33,7 @@ struct Problem {
         for (std::size_t k = 0; k < row.size(); ++k) gap[k] = k % 3 == 0 ? -1e-3 : 0;
         data.make_room_for(row.size(), 4 * row.size(), velocity_next.size(), settings);
         team.gather(executor, [&] {
-            order_region(inputs, row, team, data.place.span(), kept);
+            order_region(inputs, row, team, data.node_index.span(), kept);
             if (!coloured)
                 for (std::size_t k = 0; k < row.size(); ++k) kept.order.contact[k] = static_cast<Index>(k);
             load(team);
@@ -46,13 +46,13 @@ struct Problem {
     }
 
     /// Solves the split impulse with gaps of -1e-3 m at every third contact.
-    template <class Walk>
-    void push(const Walk& walk) {
+    template <class Traversal>
+    void push(const Traversal& traversal) {
         RegionInputs pressed = inputs;
         pressed.gap = gap;
         const RegionStage of_pressed{pressed, settings, stage.h, out, data};
-        const LumpedRegion<Walk> region{
-            .row = row, .walk = walk, .memory = memory, .scale = scale, .tolerance = settings.tolerance};
+        const LumpedRegion<Traversal> region{
+            .row = row, .traversal = traversal, .memory = memory, .scale = scale, .tolerance = settings.tolerance};
         solve_push(of_pressed, region, operator_of(of_pressed, region));
     }
 
@@ -75,9 +75,9 @@ struct Times {
 };
 
 /// Measures wall times of a sweep (with acceleration), of loading, of a solve and of the split impulse [s].
-template <class Walk>
-void measure(Problem& problem, Team& team, const Walk& walk, const SolveLimits& limits, Times& times) {
-    LumpedOperatorBy<Walk> op(problem.memory, Friction::cone, problem.scale, walk);
+template <class Traversal>
+void measure(Problem& problem, Team& team, const Traversal& traversal, const SolveLimits& limits, Times& times) {
+    LumpedOperatorBy<Traversal> op(problem.memory, Friction::cone, problem.scale, traversal);
     op.remember();
     constexpr double long_enough = 20e-3;  // also enough for the system to find a core for each worker [s]
     std::vector<double> sweeps;
@@ -98,7 +98,7 @@ void measure(Problem& problem, Team& team, const Walk& walk, const SolveLimits& 
     times.sweeps = run_method(SolverMethod::ags, op, limits).iterations;
     times.solve.push_back(wall_seconds() - start);
     start = wall_seconds();
-    problem.push(walk);
+    problem.push(traversal);
     times.push.push_back(wall_seconds() - start);
 }
 
@@ -144,10 +144,10 @@ void profile(Index contacts, const std::vector<int>& threads, const std::vector<
             team.gather(*each.executor, [&] {
                 coloured.kept.moving[0][0] ^= 1;  // marks the nodes as changed, so that the region is ordered again
                 const double start = wall_seconds();
-                order_region(coloured.inputs, coloured.row, team, coloured.data.place.span(), coloured.kept);
+                order_region(coloured.inputs, coloured.row, team, coloured.data.node_index.span(), coloured.kept);
                 times.order.push_back(wall_seconds() - start);
                 coloured.load(team);
-                measure(coloured, team, coloured.kept.walk(team), limits, times);
+                measure(coloured, team, coloured.kept.traversal(team), limits, times);
             });
         }
     }

@@ -134,7 +134,8 @@ private:
             if (inputs_.rigid.nodes.row(b) != frame) return Vec3::Zero();
             const ImplicitCoupling& coupling = *inputs_.implicit.coupling;
             const auto place = [&](Index node) {
-                return coupling.place[static_cast<std::size_t>(inputs_.implicit.row(node, inputs_.rigid.nodes))];
+                return coupling
+                    .touched_index[static_cast<std::size_t>(inputs_.implicit.row(node, inputs_.rigid.nodes))];
             };
             return coupling.block(static_cast<std::size_t>(frame), place(a), place(b)) * impulse;
         }

@@ -47,8 +47,8 @@ void combine_records(void* from, void* into, int* count, MPI_Datatype* type) {
 
 class MpiRanks final : public Ranks {
 public:
-    MpiRanks(MPI_Comm world, bool ends_mpi, std::atomic<const char*>* last_words)
-        : ends_mpi_(ends_mpi), last_words_(last_words) {
+    MpiRanks(MPI_Comm world, bool ends_mpi, std::atomic<const char*>* exit_message)
+        : ends_mpi_(ends_mpi), exit_message_(exit_message) {
         int level = MPI_THREAD_SINGLE;
         MPI_Query_thread(&level);
         if (level < MPI_THREAD_SERIALIZED)
@@ -94,10 +94,10 @@ public:
         combine_in_use = combine;
         MPI_Allreduce(MPI_IN_PLACE, record.data(), 1, type->second, combine_, world_);
     }
-    std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) override {
+    std::vector<RankMessage> gather_everywhere(std::span<const std::byte> own_message) override {
         const Stopclock clock(traffic_.seconds);
         ++traffic_.collectives;
-        const int length = length_of(mine.size(), "a gathered message");
+        const int length = length_of(own_message.size(), "a gathered message");
         std::vector<int> lengths(static_cast<std::size_t>(size_)), begins(static_cast<std::size_t>(size_));
         MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, world_);
         std::size_t total = 0;
@@ -106,21 +106,22 @@ public:
             total += static_cast<std::size_t>(lengths[r]);
         }
         RankMessage joined(total);
-        MPI_Allgatherv(mine.data(), length, MPI_BYTE, joined.data(), lengths.data(), begins.data(), MPI_BYTE, world_);
+        MPI_Allgatherv(own_message.data(), length, MPI_BYTE, joined.data(), lengths.data(), begins.data(), MPI_BYTE,
+                       world_);
         std::vector<RankMessage> all;
         for (std::size_t r = 0; r < lengths.size(); ++r)
             all.emplace_back(joined.begin() + begins[r], joined.begin() + begins[r] + lengths[r]);
         return all;
     }
-    std::vector<RankMessage> gather(std::span<const std::byte> mine) override {
+    std::vector<RankMessage> gather(std::span<const std::byte> own_message) override {
         const Stopclock clock(traffic_.seconds);
         ++traffic_.collectives;
-        const std::uint64_t bytes = mine.size();
+        const std::uint64_t bytes = own_message.size();
         std::vector<std::uint64_t> lengths(rank_ == 0 ? static_cast<std::size_t>(size_) : 0);
         MPI_Gather(&bytes, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, world_);
         std::vector<RankMessage> all;
         if (rank_ == 0) {
-            all.emplace_back(mine.begin(), mine.end());
+            all.emplace_back(own_message.begin(), own_message.end());
             for (int r = 1; r < size_; ++r) {
                 RankMessage& message = all.emplace_back(lengths[static_cast<std::size_t>(r)]);
                 for_each_piece(message.size(), [&](std::size_t begin, int length) {
@@ -128,8 +129,8 @@ public:
                 });
             }
         } else {
-            for_each_piece(mine.size(), [&](std::size_t begin, int length) {
-                MPI_Send(mine.data() + begin, length, MPI_BYTE, 0, gather_tag, world_);
+            for_each_piece(own_message.size(), [&](std::size_t begin, int length) {
+                MPI_Send(own_message.data() + begin, length, MPI_BYTE, 0, gather_tag, world_);
             });
         }
         return all;
@@ -139,7 +140,7 @@ public:
         int length = 0;
         MPI_Get_processor_name(host.data(), &length);
         std::cerr << "skerry: rank " << rank_ << " on " << host.data() << ": " << message << "\n";
-        if (const char* const words = last_words_ == nullptr ? nullptr : last_words_->exchange(nullptr))
+        if (const char* const words = exit_message_ == nullptr ? nullptr : exit_message_->exchange(nullptr))
             std::cerr << words;
         std::cerr << std::flush;
         MPI_Abort(world_, code);
@@ -153,10 +154,10 @@ private:
 
     /// Converts a number of bytes to int, the type in which MPI counts. Throws std::runtime_error if it does not fit.
     int length_of(std::size_t bytes, const std::string& object) const {
-        constexpr int most = std::numeric_limits<int>::max();
-        if (bytes > most)
+        constexpr int max_count = std::numeric_limits<int>::max();
+        if (bytes > max_count)
             throw std::runtime_error("rank " + std::to_string(rank_) + ": found " + object + " of " +
-                                     std::to_string(bytes) + " bytes, expected at most " + std::to_string(most) +
+                                     std::to_string(bytes) + " bytes, expected at most " + std::to_string(max_count) +
                                      "; use more ranks");
         return static_cast<int>(bytes);
     }
@@ -192,7 +193,7 @@ private:
     }
 
     bool ends_mpi_;
-    std::atomic<const char*>* last_words_;
+    std::atomic<const char*>* exit_message_;
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     MPI_Op combine_ = MPI_OP_NULL;
@@ -202,13 +203,13 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* last_words) {
+std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* exit_message) {
     // With this variable Open MPI yields the core while it waits. Otherwise a waiting rank would take time from the
     // threads of other ranks. A value that the user has set is kept.
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     int level = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
-    return std::make_unique<MpiRanks>(MPI_COMM_WORLD, true, last_words);
+    return std::make_unique<MpiRanks>(MPI_COMM_WORLD, true, exit_message);
 }
 
 std::unique_ptr<Ranks> join_mpi(int communicator) {

@@ -9,10 +9,10 @@
 namespace skerry {
 
 /// Starts MPI in this process, which is possible once. The processes that the launcher has started are the ranks.
-/// Destroying the object waits for all ranks and ends MPI. If `last_words` is given and points to a text, the first
+/// Destroying the object waits for all ranks and ends MPI. If `exit_message` is given and points to a text, the first
 /// call of Ranks::abort also prints this text. Throws std::runtime_error if MPI does not offer the thread level
 /// MPI_THREAD_SERIALIZED.
-std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* last_words = nullptr);
+std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* exit_message = nullptr);
 
 /// Returns the processes of a communicator as ranks. `communicator`: its number from MPI_Comm_c2f. Throws
 /// std::runtime_error if MPI runs with a thread level below MPI_THREAD_SERIALIZED.

@@ -39,9 +39,9 @@ public:
     /// combine(into, from) must be associative and commutative to the last bit.
     virtual void reduce(std::span<std::byte> record, void (*combine)(std::byte* into, const std::byte* from)) = 0;
     /// Collective. Returns the messages of all ranks, in the order of the ranks.
-    virtual std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) = 0;
+    virtual std::vector<RankMessage> gather_everywhere(std::span<const std::byte> own_message) = 0;
     /// Collective. Returns the messages of all ranks on rank 0, and nothing on the other ranks.
-    virtual std::vector<RankMessage> gather(std::span<const std::byte> mine) = 0;
+    virtual std::vector<RankMessage> gather(std::span<const std::byte> own_message) = 0;
     /// Prints `message` and ends all ranks with the exit code `code`, after an error that the other ranks do not know
     /// of.
     [[noreturn]] virtual void abort(std::string_view message, int code) = 0;

@@ -28,7 +28,7 @@ void RegionSolver::solve(Executor& executor, const RegionInputs& contacts, const
             outcome = solve_single(stage, row[0], base);
         } else if (is_large(stage, regions, number)) {
             team_.gather(executor, [&] {
-                order_region(contacts, row, team_, memory_.place.span(), coloured_);
+                order_region(contacts, row, team_, memory_.node_index.span(), coloured_);
                 outcome = solve(load_by_colour(stage, row, base, team_, coloured_));
             });
         } else {

@@ -36,18 +36,18 @@ Index end_of(std::span<const BoundaryTriangle> triangles) {
     return end;
 }
 
-/// Nodes of the boundary surface of a body. `node`: their numbers, ascending. `place`: for each node of the body, its
-/// index in `node`, or no_index for an inner node.
+/// Nodes of the boundary surface of a body. `node`: their numbers, ascending. `index_of`: for each node of the body,
+/// its index in `node`, or no_index for an inner node.
 struct BoundaryNodes {
-    std::vector<Index> node, place;
+    std::vector<Index> node, index_of;
 
     BoundaryNodes(std::span<const BoundaryTriangle> triangles, Index end)
-        : place(static_cast<std::size_t>(end), no_index) {
+        : index_of(static_cast<std::size_t>(end), no_index) {
         for (const BoundaryTriangle& triangle : triangles)
-            for (const Index n : triangle.node) place[static_cast<std::size_t>(n)] = 0;
+            for (const Index n : triangle.node) index_of[static_cast<std::size_t>(n)] = 0;
         for (Index n = 0; n < end; ++n) {
-            if (place[static_cast<std::size_t>(n)] == no_index) continue;
-            place[static_cast<std::size_t>(n)] = rows(node.size());
+            if (index_of[static_cast<std::size_t>(n)] == no_index) continue;
+            index_of[static_cast<std::size_t>(n)] = rows(node.size());
             node.push_back(n);
         }
     }
@@ -58,10 +58,10 @@ struct BoundaryNodes {
 struct BoundaryEdges {
     std::vector<std::array<Index, 2>> node;
     // For each triangle and side: index of the edge in `node`; no_index if the side is not an edge.
-    std::vector<std::array<Index, 3>> of_triangle;
+    std::vector<std::array<Index, 3>> triangle_edges;
 
     BoundaryEdges(std::span<const BoundaryTriangle> triangles, Index end)
-        : of_triangle(triangles.size(), {no_index, no_index, no_index}) {
+        : triangle_edges(triangles.size(), {no_index, no_index, no_index}) {
         struct Side {
             std::array<Index, 2> node;
             Index triangle, k;
@@ -72,12 +72,12 @@ struct BoundaryEdges {
             for (std::size_t k = 0; k < 3; ++k)
                 if (has_edge(triangles[t].node, k))
                     sides.push_back({edge_nodes(triangles[t].node, k), rows(t), static_cast<Index>(k)});
-        std::vector<Side> spare;
+        std::vector<Side> buffer;
         for (const std::size_t i : {1, 0})
-            counting_sort(sides, spare, end, [i](const Side& side) { return side.node[i]; });
+            counting_sort(sides, buffer, end, [i](const Side& side) { return side.node[i]; });
         for (const Side& side : sides) {
             if (node.empty() || node.back() != side.node) node.push_back(side.node);
-            of_triangle[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.k)] =
+            triangle_edges[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.k)] =
                 rows(node.size()) - 1;
         }
     }
@@ -144,9 +144,9 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
             end = std::max(end, face.node[2] + 1);
             faces.push_back(face);
         }
-    std::vector<TetrahedronFace> spare;
+    std::vector<TetrahedronFace> buffer;
     for (const std::size_t i : {2, 1, 0})
-        counting_sort(faces, spare, end, [i](const TetrahedronFace& face) { return face.node[i]; });
+        counting_sort(faces, buffer, end, [i](const TetrahedronFace& face) { return face.node[i]; });
     return faces;
 }
 
@@ -187,10 +187,10 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
         const BoundaryTriangle& triangle = triangles[t];
         std::array<Index, 3> node, edge_row, vertex_row;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Index edge = edges.of_triangle[t][k];
+            const Index edge = edges.triangle_edges[t][k];
             node[k] = first_node + triangle.node[k];
             edge_row[k] = edge == no_index ? no_index : ranges.edges.begin + edge;
-            vertex_row[k] = ranges.vertices.begin + nodes.place[static_cast<std::size_t>(triangle.node[k])];
+            vertex_row[k] = ranges.vertices.begin + nodes.index_of[static_cast<std::size_t>(triangle.node[k])];
         }
         surface.triangles.node.push_back(node);
         surface.triangles.edge.push_back(edge_row);
@@ -204,32 +204,33 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
     return ranges;
 }
 
-SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface) {
+SurfaceRanges append_surface_copy(const SurfaceRanges& original, RowOffsets& offset, SurfaceTables& surface) {
     const auto after = [](const auto& column, Range rows) {
         const Index begin = static_cast<Index>(column.size());
         return Range{begin, begin + rows.size()};
     };
-    const SurfaceRanges ranges{after(surface.triangles.node, like.triangles), after(surface.edges.node, like.edges),
-                               after(surface.vertices.node, like.vertices)};
-    behind.triangles = ranges.triangles.begin - like.triangles.begin;
-    behind.edges = ranges.edges.begin - like.edges.begin;
-    behind.vertices = ranges.vertices.begin - like.vertices.begin;
-    append_again(surface.triangles.node, like.triangles, [&](auto& rows) { move_on(rows, behind.nodes); });
-    append_again(surface.triangles.edge, like.triangles, [&](auto& rows) { move_on(rows, behind.edges); });
-    append_again(surface.triangles.vertex, like.triangles, [&](auto& rows) { move_on(rows, behind.vertices); });
-    append_again(surface.triangles.owned_vertices, like.triangles, [](std::uint8_t) {});
-    append_again(surface.triangles.owned_edges, like.triangles, [](std::uint8_t) {});
-    append_again(surface.triangles.element, like.triangles, [&](Index& row) { move_on(row, behind.elements); });
-    append_again(surface.edges.node, like.edges, [&](auto& rows) { move_on(rows, behind.nodes); });
-    append_again(surface.edges.triangle, like.edges, [&](auto& rows) { move_on(rows, behind.triangles); });
-    if (like.vertices.size() == 0) return ranges;
-    const Range around{surface.vertices.triangle_begin[like.vertices.begin],
-                       surface.vertices.triangle_end[like.vertices.end - 1]};
+    const SurfaceRanges ranges{after(surface.triangles.node, original.triangles),
+                               after(surface.edges.node, original.edges),
+                               after(surface.vertices.node, original.vertices)};
+    offset.triangles = ranges.triangles.begin - original.triangles.begin;
+    offset.edges = ranges.edges.begin - original.edges.begin;
+    offset.vertices = ranges.vertices.begin - original.vertices.begin;
+    append_copies(surface.triangles.node, original.triangles, [&](auto& rows) { add_offset(rows, offset.nodes); });
+    append_copies(surface.triangles.edge, original.triangles, [&](auto& rows) { add_offset(rows, offset.edges); });
+    append_copies(surface.triangles.vertex, original.triangles, [&](auto& rows) { add_offset(rows, offset.vertices); });
+    append_copies(surface.triangles.owned_vertices, original.triangles, [](std::uint8_t) {});
+    append_copies(surface.triangles.owned_edges, original.triangles, [](std::uint8_t) {});
+    append_copies(surface.triangles.element, original.triangles, [&](Index& row) { add_offset(row, offset.elements); });
+    append_copies(surface.edges.node, original.edges, [&](auto& rows) { add_offset(rows, offset.nodes); });
+    append_copies(surface.edges.triangle, original.edges, [&](auto& rows) { add_offset(rows, offset.triangles); });
+    if (original.vertices.size() == 0) return ranges;
+    const Range around{surface.vertices.triangle_begin[original.vertices.begin],
+                       surface.vertices.triangle_end[original.vertices.end - 1]};
     const Index items = static_cast<Index>(surface.vertex_triangle.size()) - around.begin;
-    append_again(surface.vertices.node, like.vertices, [&](Index& row) { move_on(row, behind.nodes); });
-    append_again(surface.vertices.triangle_begin, like.vertices, [&](Index& place) { place += items; });
-    append_again(surface.vertices.triangle_end, like.vertices, [&](Index& place) { place += items; });
-    append_again(surface.vertex_triangle, around, [&](Index& row) { move_on(row, behind.triangles); });
+    append_copies(surface.vertices.node, original.vertices, [&](Index& row) { add_offset(row, offset.nodes); });
+    append_copies(surface.vertices.triangle_begin, original.vertices, [&](Index& index) { index += items; });
+    append_copies(surface.vertices.triangle_end, original.vertices, [&](Index& index) { index += items; });
+    append_copies(surface.vertex_triangle, around, [&](Index& row) { add_offset(row, offset.triangles); });
     return ranges;
 }
 

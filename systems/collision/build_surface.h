@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "components/append_again.h"
+#include "components/append_copies.h"
 #include "components/body_table.h"
 #include "components/surface_table.h"
 
@@ -40,9 +40,9 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
                              SurfaceTables& surface);
 
 /// Appends the surface of a new body as a copy of the surface of an earlier body with the same mesh, and returns the
-/// ranges of the new rows. `like`: ranges of the earlier surface. `behind`: row numbers of the new body minus the row
-/// numbers of the earlier body. The caller sets the differences for nodes and elements; the function sets those for
+/// ranges of the new rows. `original`: ranges of the earlier surface. `offset`: row numbers of the new body minus the
+/// row numbers of the earlier body. The caller sets the differences for nodes and elements; the function sets those for
 /// triangles, edges and vertices.
-SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
+SurfaceRanges append_surface_copy(const SurfaceRanges& original, RowOffsets& offset, SurfaceTables& surface);
 
 }  // namespace skerry

@@ -25,19 +25,19 @@ public:
         // behind the plane of the face, so its test covers the whole rim.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
-            feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_shape);
+            feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.part_or_point);
         if (is_another || !can_move(std::span(node).first(feature.nodes()))) return false;
         const Real approach = greatest_approach(pose_, motion.h, feature);
         if (!(approach > slow_fraction * least)) return false;
         if (feature.kind == Kind::face) {
             const auto& x = feature.position;
-            const FaceContact now = face_contact(geometry_, feature.of_shape,
+            const FaceContact now = face_contact(geometry_, feature.part_or_point,
                                                  {to_local(pose_, x[0]), to_local(pose_, x[1]), to_local(pose_, x[2])});
             if (!(approach > slow_fraction * std::max(now.nearest, now.distance))) return false;
         }
         // For a plane collider: height of the first node above the plane [m].
         const Real height = pose_.rotation.col(2).dot(feature.position[0] - pose_.position);
-        if (the_end_tells(geometry_, feature) && !(approach > height)) return false;
+        if (end_position_suffices(geometry_, feature) && !(approach > height)) return false;
         const std::optional<Touch> touch = first_touch(geometry_, pose_, motion.h, feature);
         if (!touch || (touch->within && !is_outside(inputs, first, to_world(pose_, touch->point)))) return true;
         add(candidate, feature, node, *touch);
@@ -56,10 +56,10 @@ private:
         if (is_edge_edge(candidate.feature)) {
             const auto& end = inputs.surface.edges.node[candidate.first];
             node = {end[0], end[1], no_index};
-            return feature_of(Kind::edge, node, local / contacts_of_edge, kept_of_radii(scale));
+            return feature_of(Kind::edge, node, local / contacts_of_edge, threshold_of_radii(scale));
         }
         node = {inputs.surface.vertices.node[candidate.first], no_index, no_index};
-        return feature_of(Kind::node, node, local, kept_of_radii(scale));
+        return feature_of(Kind::node, node, local, threshold_of_radii(scale));
     }
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,

@@ -22,16 +22,16 @@ PairData::PairData(const CollisionInputs& all_inputs, const PairTable& pairs, In
 }
 
 ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
-                       const ContactPlace& place) {
+                       const ContactGeometry& geometry) {
     const BodyTable& body = pair.inputs.body;
     ContactRow row{.key = {pair.key, feature},
                    .kind = kind,
                    .stencil = stencil,
-                   .point = place.point,
-                   .normal = place.normal,
-                   .gap = place.distance - place.contact_distance,
-                   .distance = place.distance,
-                   .surface_velocity = place.surface_velocity,
+                   .point = geometry.point,
+                   .normal = geometry.normal,
+                   .gap = geometry.distance - geometry.contact_distance,
+                   .distance = geometry.distance,
+                   .surface_velocity = geometry.surface_velocity,
                    .static_friction = pair.surface.static_friction,
                    .dynamic_friction = pair.surface.dynamic_friction,
                    .restitution = pair.surface.restitution,
@@ -40,10 +40,10 @@ ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind 
                    .collider = pair.kind == PairKind::collider ? pair.second : body.collider[pair.second]};
     if (is_cylinder(pair.inputs, pair.first)) return row;
     if (kind == ContactKind::point_triangle && is_point_of_second(feature)) std::swap(row.first_body, row.second_body);
-    const Real of_first = body.round_radius[row.first_body],
-               of_second = row.second_body == no_index ? 0 : body.round_radius[row.second_body];
-    row.point += of_second * place.normal;
-    row.distance -= of_first + of_second;
+    const Real first_radius = body.round_radius[row.first_body],
+               second_radius = row.second_body == no_index ? 0 : body.round_radius[row.second_body];
+    row.point += second_radius * geometry.normal;
+    row.distance -= first_radius + second_radius;
     return row;
 }
 

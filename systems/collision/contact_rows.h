@@ -38,7 +38,7 @@ struct PairData {
 /// Contact point between two features. An analytic collider or a rigid cylinder is a single feature. The feature of a
 /// sphere or capsule is its core (centre or axis); in a pair with a cylinder it is the surface of the sphere or
 /// capsule.
-struct ContactPlace {
+struct ContactGeometry {
     Vec3 point;                            // contact point on the second feature [m]
     Vec3 normal;                           // unit normal from the second to the first feature
     Real distance;                         // signed distance of the features [m]
@@ -47,7 +47,7 @@ struct ContactPlace {
 };
 
 ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
-                       const ContactPlace& place);
+                       const ContactGeometry& geometry);
 
 /// Returns the feature key of a contact point on a rigid cylinder. `feature`: feature key of the candidate. `number`:
 /// number of the contact point among the points of this candidate, counted from 0.

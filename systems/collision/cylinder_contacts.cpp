@@ -16,7 +16,7 @@ namespace {
 
 // Lower bound of the greatest displacement of a rim node of a cylinder, divided by the greatest displacement of any rim
 // point. Travel is measured at nodes only, but a rim point between two nodes can move further than both.
-constexpr Real of_rim_nodes = 0.95;
+constexpr Real rim_node_fraction = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
 // an edge touches the curved side of the cylinder along a part of its length, or not at all.
@@ -27,8 +27,9 @@ constexpr Real straight_slope = 1e-7;
 
 // Numbers of the contact points between a cylinder and a triangle: 0 to 2 are the corners of the triangle. Then follow
 // eight numbers for each edge of the triangle and nine for each rim of the cylinder.
-constexpr Index number_of_edges = 3, places_of_edge = 8, number_of_faces = number_of_edges + 3 * places_of_edge;
-static_assert(number_of_faces + 2 * RimPoints::most_of_rim <= touches_of_triangle);
+constexpr Index first_edge_number = 3, numbers_per_edge = 8,
+                first_rim_number = first_edge_number + 3 * numbers_per_edge;
+static_assert(first_rim_number + 2 * RimPoints::max_per_rim <= touches_of_triangle);
 
 // A rim point whose projection lies beside a face by less than this fraction of the edge length counts as above the
 // face, so that no rim point is lost between two faces by rounding errors.
@@ -49,21 +50,21 @@ public:
         else
             against_core(c);
     }
-    Real least_distance() const { return least_; }
+    Real least_distance() const { return smallest_distance_; }
 
 private:
     /// Stores asleep_until of candidate c, the travel of the pair up to which the candidate needs no test. `distance`:
     /// lower bound of the distance between the two surfaces [m]. Returns true if the contact points of the candidate
     /// must be computed in this step.
-    bool note(Index c, Real distance) {
-        least_ = std::min(least_, distance);
-        asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
+    bool store_distance(Index c, Real distance) {
+        smallest_distance_ = std::min(smallest_distance_, distance);
+        asleep_until[c] = travel_base + (distance > 0 ? rim_node_fraction : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
     /// True if `bound`, a lower bound of the distance, shows that candidate c has no contact in this step; asleep_until
     /// is then stored. If the result is false, the caller computes the contact points and stores asleep_until with the
     /// sharper bound that follows from them.
-    bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
+    bool is_far(Index c, Real bound) { return bound > near_surface() && !store_distance(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
     void against_triangle(Index c, const Candidate& candidate) {
@@ -71,7 +72,7 @@ private:
         const TriangleTable& table = inputs.surface.triangles;
         const auto& node = table.node[t];
         const LocalFace face{local(node[0]), local(node[1]), local(node[2])};
-        if (!note(c, distance_bound(cylinder_.geometry, face))) return;
+        if (!store_distance(c, distance_bound(cylinder_.geometry, face))) return;
         for (std::size_t k = 0; k < 3; ++k)
             if (table.owned_vertices[t] >> k & 1) corner(candidate, k, face[k]);
         for (std::size_t k = 0; k < 3; ++k)
@@ -83,19 +84,19 @@ private:
         const SurfacePoint on = local_distance(cylinder_.geometry, at, 0);
         if (!(on.distance <= near_surface())) return;
         const Index vertex = inputs.surface.triangles.vertex[candidate.second][k];
-        const CylinderPlace place = place_of(on.normal);
+        const CylinderRegion region = nearest_region(on.normal);
         const Vec3 normal = -(cylinder_.motion.rotation * on.normal);
-        bool holds = place == CylinderPlace::end;
-        if (place == CylinderPlace::side)
-            holds = vertex_holds_axis(inputs.surface, inputs.position, vertex,
-                                      cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
-                                      cylinder_.motion.rotation.col(2), scale);
-        if (place == CylinderPlace::rim)
-            holds = vertex_holds_place(inputs.surface, inputs.position, vertex,
-                                       std::max(std::abs(on.distance), scale.edge) * normal, scale);
+        bool is_contact = region == CylinderRegion::end;
+        if (region == CylinderRegion::side)
+            is_contact = vertex_holds_axis(inputs.surface, inputs.position, vertex,
+                                           cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
+                                           cylinder_.motion.rotation.col(2), scale);
+        if (region == CylinderRegion::rim)
+            is_contact = vertex_holds_place(inputs.surface, inputs.position, vertex,
+                                            std::max(std::abs(on.distance), scale.edge) * normal, scale);
         std::array<Real, 3> weight{};
         weight[k] = 1;
-        if (holds) add_touch(candidate, static_cast<Index>(k), weight, normal, on.distance);
+        if (is_contact) add_touch(candidate, static_cast<Index>(k), weight, normal, on.distance);
     }
 
     void edge(const Candidate& candidate, std::size_t k, const Vec3& a, const Vec3& b) {
@@ -111,17 +112,17 @@ private:
             // and is perpendicular to the contact normal. Elsewhere the adjacent faces support the cylinder. A contact
             // at the edge would act as a bump, for example if the edge is parallel to a rolling cylinder and ahead of
             // it.
-            const CylinderPlace place = place_of(touch.on.normal);
+            const CylinderRegion region = nearest_region(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
-                place == CylinderPlace::end || (place == CylinderPlace::side && !parallel && straight_on);
+                region == CylinderRegion::end || (region == CylinderRegion::side && !parallel && straight_on);
             if (!edge_faces(inputs.surface, inputs.position, inputs.surface.triangles.edge[candidate.second][k], normal,
                             nearly_flat))
                 continue;
             std::array<Real, 3> weight{};
             weight[k] = 1 - touch.s;
             weight[(k + 1) % 3] = touch.s;
-            add_touch(candidate, number_of_edges + places_of_edge * static_cast<Index>(k) + touch.number, weight,
+            add_touch(candidate, first_edge_number + numbers_per_edge * static_cast<Index>(k) + touch.number, weight,
                       normal, touch.on.distance);
         }
     }
@@ -138,7 +139,7 @@ private:
             const Vec3 beside = closest.nearest + height * normal - point.at;
             if (closest.region != TriangleRegion::face && !(beside.norm() <= seam_fraction * scale.edge)) continue;
             if (height < 0 && !is_truly_behind(c, point.at, -height)) continue;
-            add_touch(candidate, number_of_faces + point.number, closest.weight, cylinder_.motion.rotation * normal,
+            add_touch(candidate, first_rim_number + point.number, closest.weight, cylinder_.motion.rotation * normal,
                       height);
         }
     }
@@ -165,21 +166,21 @@ private:
     /// point, and their weights. All weights are zero if the other partner is a collider. `speed`: relative speed of
     /// the two partners at the contact point [m/s].
     void add_if_reached(std::uint64_t feature, Index number, const std::array<Index, 3>& node,
-                        const std::array<Real, 3>& weight, const ContactPlace& place, Real speed) {
-        if (!within_reach(place.distance + scale.radii, speed)) return;
+                        const std::array<Real, 3>& weight, const ContactGeometry& contact, Real speed) {
+        if (!within_reach(contact.distance + scale.radii, speed)) return;
         add(feature_of_touch(*this, feature, number),
             kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
-            stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, weight), place);
+            stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, weight), contact);
     }
     /// Adds a contact for each entry of `touches_`, the contact points of the cylinder and one other shape. `node`:
-    /// nodes of the other shape, with the weights weight_of(touch). `speed_at(velocity, place)`: relative speed of the
-    /// two shapes at the contact point `place`, where the cylinder has the velocity `velocity` [m/s].
+    /// nodes of the other shape, with the weights weight_of(touch). `speed_at(velocity, contact)`: relative speed of
+    /// the two shapes at the contact point `contact`, where the cylinder has the velocity `velocity` [m/s].
     void add_touches(Index c, const std::array<Index, 3>& node, auto&& weight_of, auto&& speed_at) {
         for (const CylinderTouch& touch : touches_) {
             const Vec3 point = cylinder_.world(touch.on_other), velocity = cylinder_.velocity_at(point);
-            ContactPlace place{point, cylinder_.motion.rotation * touch.normal, touch.distance, scale.shell};
-            const Real speed = speed_at(velocity, place);
-            add_if_reached(candidates[c].feature, touch.number, node, weight_of(touch), place, speed);
+            ContactGeometry contact{point, cylinder_.motion.rotation * touch.normal, touch.distance, scale.shell};
+            const Real speed = speed_at(velocity, contact);
+            add_if_reached(candidates[c].feature, touch.number, node, weight_of(touch), contact, speed);
         }
     }
 
@@ -191,9 +192,9 @@ private:
         const Vec3 a = local(core[0]), b = local(core[1]);
         touches_.clear();
         if (nodes == 1) {
-            if (note(c, local_distance(cylinder_.geometry, a, 0).distance - radius))
+            if (store_distance(c, local_distance(cylinder_.geometry, a, 0).distance - radius))
                 touch_ball(cylinder_.geometry, a, radius, near_surface(), touches_);
-        } else if (note(c, edge_distance(cylinder_.geometry, 0, a, b) - radius)) {
+        } else if (store_distance(c, edge_distance(cylinder_.geometry, 0, a, b) - radius)) {
             touch_capsule(cylinder_.geometry, a, b, radius, near_surface(), touches_);
         }
         add_touches(
@@ -201,7 +202,7 @@ private:
             [](const CylinderTouch& touch) {
                 return std::array{touch.weight[0], touch.weight[1], Real(0)};
             },
-            [&](const Vec3& velocity, const ContactPlace&) { return speed_against(velocity, core); });
+            [&](const Vec3& velocity, const ContactGeometry&) { return speed_against(velocity, core); });
     }
 
     void against_cylinder(Index c, const RigidCylinder& other) {
@@ -211,8 +212,8 @@ private:
             [](const CylinderTouch&) {
                 return std::array<Real, 3>{1, 0, 0};
             },
-            [&](const Vec3& velocity, const ContactPlace& place) {
-                return (velocity - other.velocity_at(place.point)).norm();
+            [&](const Vec3& velocity, const ContactGeometry& contact) {
+                return (velocity - other.velocity_at(contact.point)).norm();
             });
     }
 
@@ -220,26 +221,26 @@ private:
         find_touches(c, geometry, motion, part);
         add_touches(
             c, {}, [](const CylinderTouch&) { return std::array<Real, 3>{}; },
-            [&](const Vec3& velocity, ContactPlace& place) {
-                place.surface_velocity = velocity_at(motion, place.point);
-                return (velocity - place.surface_velocity).norm();
+            [&](const Vec3& velocity, ContactGeometry& contact) {
+                contact.surface_velocity = velocity_at(motion, contact.point);
+                return (velocity - contact.surface_velocity).norm();
             });
     }
 
     void find_touches(Index c, const ColliderGeometry& other, const RigidMotion& motion, Index part) {
-        const RigidMotion place{cylinder_.local(motion.position),
-                                cylinder_.motion.rotation.transpose() * motion.rotation, Vec3::Zero(), Vec3::Zero()};
+        const RigidMotion pose{cylinder_.local(motion.position),
+                               cylinder_.motion.rotation.transpose() * motion.rotation, Vec3::Zero(), Vec3::Zero()};
         touches_.clear();
-        if (is_far(c, shape_distance_bound(cylinder_.geometry, other, part, place, touches_))) return;
-        touch_shape(cylinder_.geometry, other, part, place, near_surface(), touches_);
-        note(c, shape_distance_bound(cylinder_.geometry, other, part, place, touches_));
+        if (is_far(c, shape_distance_bound(cylinder_.geometry, other, part, pose, touches_))) return;
+        touch_shape(cylinder_.geometry, other, part, pose, near_surface(), touches_);
+        store_distance(c, shape_distance_bound(cylinder_.geometry, other, part, pose, touches_));
     }
 
     Vec3 local(Index node) const { return cylinder_.local(inputs.position[node]); }
 
     const RigidCylinder cylinder_ = cylinder_at_start(inputs, first);
     CylinderTouches touches_;
-    Real least_ = infinity;
+    Real smallest_distance_ = infinity;
 };
 
 }  // namespace

@@ -19,11 +19,11 @@ namespace {
 
 // First numbers of crossings (feature_of_touch), above the numbers that find_cylinder_contacts uses. A triangle has
 // eight numbers: three for its corners, three for its edges and two for the rims of the cylinder. Another shape has one
-// number for each contact point at the end of the step, from crossing_of_shape on, and the number crossing_on_the_way
+// number for each contact point at the end of the step, from crossing_of_shape on, and the number crossing_during_step
 // for the first contact during the step.
-constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
-                crossing_on_the_way = touches_of_shape - 1;
-static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::most <= touches_of_shape);
+constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::capacity,
+                crossing_during_step = touches_of_shape - 1;
+static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::capacity <= touches_of_shape);
 
 // If the motion is at most this fraction of half the thickness of the thinner shape, a test at the end of the step
 // suffices: to pass completely through the other one, a shape must move much further.
@@ -56,7 +56,7 @@ private:
         const TriangleTable& table = inputs.surface.triangles;
         const auto& node = table.node[t];
         if (!any_moves(node)) return false;
-        const TouchingFeature face = feature_of(Kind::face, node, 0, kept(0));
+        const TouchingFeature face = feature_of(Kind::face, node, 0, threshold(0));
         const LocalFace local{cylinder_.local(face.position[0]), cylinder_.local(face.position[1]),
                               cylinder_.local(face.position[2])};
         if (!may_meet(face, distance_bound(cylinder_.geometry, local))) return false;
@@ -74,9 +74,9 @@ private:
 
     /// Tests a feature of the other body for a crossing. `radius`: radius if the body is a sphere or capsule, whose
     /// feature is its core (centre or axis); 0 for a surface of triangles [m]. Returns true if a full test was needed.
-    bool test_feature(const Candidate& candidate, Index number, Kind of_other, const std::array<Index, 3>& node,
-                      Index of_shape = 0, Real radius = 0) {
-        const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
+    bool test_feature(const Candidate& candidate, Index number, Kind feature_kind, const std::array<Index, 3>& node,
+                      Index part_or_point = 0, Real radius = 0) {
+        const TouchingFeature feature = feature_of(feature_kind, node, part_or_point, threshold(radius));
         if (!may_meet(feature, nearest(feature).distance)) return false;
         const std::optional<Hit> hit = first_hit(feature);
         if (!hit || (hit->touch.within && !is_outside(inputs, second, cylinder_.world(hit->touch.point)))) return true;
@@ -109,13 +109,13 @@ private:
         if (other.geometry.shape == ColliderShape::plane) return against_plane(candidate, other.motion, bound);
         const Real furthest = motion.h * (other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
                                           other.motion.velocity.norm()) +
-                              greatest_way_of_cylinder();
+                              max_cylinder_path();
         if (!(furthest > slow_fraction * bound)) return false;
         find_touches(0, other, furthest + scale.shell);
         if (!(furthest > slow_fraction * distance_bound_at(0, other))) return false;
         if (!any_overlap() && add_end(candidate, other)) return true;
         if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other.geometry)))
-            add_on_the_way(candidate, other);
+            add_during_step(candidate, other);
         return true;
     }
 
@@ -132,29 +132,30 @@ private:
 
     /// Adds the first contact during the step between the cylinder and the other shape, which is approximated by its
     /// facets.
-    void add_on_the_way(const Candidate& candidate, const OtherShape& other) {
+    void add_during_step(const Candidate& candidate, const OtherShape& other) {
         std::optional<Hit> first_found;
-        TouchingFeature of_first{};
+        TouchingFeature first_feature{};
         const RigidMotion end = at(other.motion, 1);
         ShapeFacets(other.geometry, other.part).for_each([&](const Facet& facet) {
-            TouchingFeature feature{.kind = facet.kind, .of_shape = 0, .position = {}, .kept = kept(facet.radius)};
+            TouchingFeature feature{
+                .kind = facet.kind, .part_or_point = 0, .position = {}, .threshold = threshold(facet.radius)};
             for (std::size_t i = 0; i < feature.nodes(); ++i) {
                 feature.position[i] = to_world(other.motion, facet.at[i]);
                 feature.displacement[i] = to_world(end, facet.at[i]) - feature.position[i];
             }
             for (Index rim = 0; rim < (facet.kind == Kind::face ? 2 : 1); ++rim) {
-                feature.of_shape = point_of_rim(rim);
+                feature.part_or_point = point_of_rim(rim);
                 if (!may_meet(feature, nearest(feature).distance)) continue;
                 const std::optional<Hit> hit = first_hit(feature);
                 if (!hit || hit->touch.within || (first_found && first_found->time <= hit->time)) continue;
                 first_found = hit;
-                of_first = feature;
+                first_feature = feature;
             }
         });
         if (!first_found) return;
-        const Vec3 point = touched_point(of_first, *first_found);
-        add_hit(candidate, crossing_on_the_way, other.stencil.value_or(stencil_of_middle()), of_first, *first_found,
-                other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, point));
+        const Vec3 point = touched_point(first_feature, *first_found);
+        add_hit(candidate, crossing_during_step, other.stencil.value_or(stencil_of_middle()), first_feature,
+                *first_found, other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, point));
     }
 
     struct Hit {
@@ -178,32 +179,33 @@ private:
         const Vec3 normal = -(rotation_at(hit.time) * hit.touch.normal),
                    arm = cylinder_.motion.rotation * hit.touch.point;
         const Real along =
-            normal.dot(cylinder_.motion.position + arm - touched_point(feature, hit)) - feature.kept.distance;
-        put(candidate, number, stencil, arm, normal, along, surface_velocity);
+            normal.dot(cylinder_.motion.position + arm - touched_point(feature, hit)) - feature.threshold.distance;
+        add_crossing(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
 
     void add_touch(const Candidate& candidate, Index number, const OtherShape& other, const CylinderTouch& touch,
-                   Real time, Real left) {
+                   Real time, Real end_distance) {
         const RigidMotion own = at(cylinder_.motion, time);
         const Vec3 normal = own.rotation * touch.normal, on_other = to_world(own, touch.on_other),
                    arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
                    at_start = to_world(other.motion, to_local(at(other.motion, time), on_other));
         const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
-        put(candidate, number, other.stencil.value_or(stencil_of_middle()), arm, normal, along,
-            other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, at_start), left);
+        add_crossing(candidate, number, other.stencil.value_or(stencil_of_middle()), arm, normal, along,
+                     other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, at_start), end_distance);
     }
 
     void find_touches(Real time, const OtherShape& other, Real near) {
         touches_.clear();
-        touch_shape(cylinder_.geometry, other.geometry, other.part, place_at(time, other), near, touches_);
+        touch_shape(cylinder_.geometry, other.geometry, other.part, relative_pose(time, other), near, touches_);
     }
     Real distance_bound_at(Real time, const OtherShape& other) const {
-        return shape_distance_bound(cylinder_.geometry, other.geometry, other.part, place_at(time, other), touches_);
+        return shape_distance_bound(cylinder_.geometry, other.geometry, other.part, relative_pose(time, other),
+                                    touches_);
     }
-    RigidMotion place_at(Real time, const OtherShape& other) const {
-        const RigidMotion own = at(cylinder_.motion, time), there = at(other.motion, time);
+    RigidMotion relative_pose(Real time, const OtherShape& other) const {
+        const RigidMotion own = at(cylinder_.motion, time), other_pose = at(other.motion, time);
         const Mat3 back = own.rotation.transpose();
-        return {back * (there.position - own.position), back * there.rotation, Vec3::Zero(), Vec3::Zero()};
+        return {back * (other_pose.position - own.position), back * other_pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
     bool any_overlap() const {
         return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
@@ -212,23 +214,22 @@ private:
     /// Tests the cylinder against a plane. The positions at the end of the step suffice for this test, because no shape
     /// can move around a plane.
     bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
-        if (!(greatest_way_of_cylinder() + motion.h * plane.velocity.norm() +
+        if (!(max_cylinder_path() + motion.h * plane.velocity.norm() +
                   motion.h * plane.angular_velocity.norm() *
-                      ((cylinder_.motion.position - plane.position).norm() + greatest_way_of_cylinder() +
-                       ball_radius()) >
+                      ((cylinder_.motion.position - plane.position).norm() + max_cylinder_path() + ball_radius()) >
               distance) ||
             distance < 0)
             return false;
         const RigidMotion end = at(cylinder_.motion, 1), plane_end = at(plane, 1);
         const Vec3 normal = plane_end.rotation.col(2), local = end.rotation.transpose() * normal;
         Vec3 deepest = -cylinder_.geometry.size[1] * (local[2] > 0 ? 1 : -1) * Vec3::UnitZ();
-        const Real out = local.head<2>().norm();
-        if (out > 0) deepest.head<2>() = -cylinder_.geometry.size[0] / out * local.head<2>();
+        const Real radial = local.head<2>().norm();
+        if (radial > 0) deepest.head<2>() = -cylinder_.geometry.size[0] / radial * local.head<2>();
         if (!(normal.dot(end.position + end.rotation * deepest - plane_end.position) < 0)) return true;
         const Vec3 arm = cylinder_.motion.rotation * deepest;
         const Real along = normal.dot(cylinder_.motion.position + arm - plane.position);
-        put(candidate, crossing_of_shape, stencil_of_middle(), arm, normal, along,
-            velocity_at(plane, cylinder_.motion.position + arm));
+        add_crossing(candidate, crossing_of_shape, stencil_of_middle(), arm, normal, along,
+                     velocity_at(plane, cylinder_.motion.position + arm));
         return true;
     }
 
@@ -246,14 +247,14 @@ private:
         return rotation_matrix(time * motion.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
     }
     /// Appends a crossing. `arm`: vector from the centre of the cylinder to the contact point at the start of the step
-    /// [m]. `along` and `left`: distances between the surfaces at the contact point at the start and at the end of the
-    /// step [m].
+    /// [m]. `along` and `end_distance`: distances between the surfaces at the contact point at the start and at the end
+    /// of the step [m].
     ///
-    /// If an earlier attempt at the step already had this contact and `left` is still negative, the contact has kept
-    /// the gap open for a straight path of the contact point, but the rotation of the cylinder has closed it. The
+    /// If an earlier attempt at the step already had this contact and `end_distance` is still negative, the contact has
+    /// kept the gap open for a straight path of the contact point, but the rotation of the cylinder has closed it. The
     /// distance of the contact is then reduced by the overlap.
-    void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
-             Real along, const Vec3& surface_velocity, Real left = 0) {
+    void add_crossing(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm,
+                      const Vec3& normal, Real along, const Vec3& surface_velocity, Real end_distance = 0) {
         const auto row_at = [&](Real distance) {
             const Vec3 point = cylinder_.motion.position + arm - distance * normal;
             return contact_row(*this, feature_of_touch(*this, candidate.feature, number),
@@ -263,10 +264,10 @@ private:
         // `along` is measured at the start of the step, but along the normal at the time of contact. If the shapes have
         // rotated by more than a right angle in between, it can be negative although nothing overlapped at the start.
         ContactRow row = row_at(std::max(along, Real(0)));
-        if (left < 0) {
+        if (end_distance < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
             if (before != known_.end() && before->key == row.key)
-                row = row_at(std::max(std::min(row.distance, before->distance) + left, Real(0)));
+                row = row_at(std::max(std::min(row.distance, before->distance) + end_distance, Real(0)));
         }
         found.push_back(row);
     }
@@ -275,7 +276,9 @@ private:
     /// becomes smaller than a tenth of the shell distance (contact_slack). A feature that a contact stops at the shell
     /// distance therefore does not count. Without a shell distance, first_touch() uses a tenth of the distance at the
     /// start of the step.
-    KeptApart kept(Real radius) const { return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity}; }
+    ContactThreshold threshold(Real radius) const {
+        return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity};
+    }
     bool any_moves(const std::array<Index, 3>& node) const {
         return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
@@ -307,7 +310,7 @@ private:
         return size[0];
     }
     Real ball_radius() const { return std::hypot(cylinder_.geometry.size[0], cylinder_.geometry.size[1]); }
-    Real greatest_way_of_cylinder() const {
+    Real max_cylinder_path() const {
         return motion.h * (cylinder_.motion.velocity.norm() + cylinder_.motion.angular_velocity.norm() * ball_radius());
     }
 

@@ -37,7 +37,7 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
 }
 
 /// Marks the forgotten bodies also in body_unmeasured, because their stored speeds are out of date.
-void note_unmeasured(SearchMemory& memory) {
+void mark_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
     if (!memory.any_unmeasured) memory.body_unmeasured.clear();
     memory.body_unmeasured.resize(count, 0);
@@ -97,9 +97,9 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
         pairs.closing[p] = memory.body_reach[a] + collider_reach(inputs, b, memory.collider_extent[b], h);
         return;
     }
-    const Vec3 apart = inputs.body.frame[a].position - inputs.body.frame[b].position;
-    pairs.frame_path[p] += (apart - pairs.frame_apart[p]).norm();
-    pairs.frame_apart[p] = apart;
+    const Vec3 frame_offset = inputs.body.frame[a].position - inputs.body.frame[b].position;
+    pairs.frame_path[p] += (frame_offset - pairs.frame_apart[p]).norm();
+    pairs.frame_apart[p] = frame_offset;
     pairs.travel[p] = inputs.body.travel[a] + inputs.body.travel[b] + pairs.frame_path[p];
     pairs.travel_bound[p] =
         pairs.travel[p] + memory.body_frame_reach[a] + memory.body_frame_reach[b] + frame_reach(inputs, a, b, h);
@@ -127,12 +127,12 @@ bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, 
 
 void list_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                   SearchMemory& memory, PairTable& pairs) {
-    pairs.fresh.resize(pairs.size());
+    pairs.rebuilt.resize(pairs.size());
     if (std::ranges::find(pairs.kind, PairKind::self) != pairs.kind.end()) resize(inputs, pairs.self);
     parallel_for(executor, pairs.size(), bounded_pairs_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             bound_travel(inputs, memory, h, static_cast<Index>(p), pairs);
-            pairs.fresh[p] = !is_valid(inputs, settings, h, static_cast<Index>(p), pairs);
+            pairs.rebuilt[p] = !is_valid(inputs, settings, h, static_cast<Index>(p), pairs);
         }
     });
     // Every index is written, but kept only if the list of the pair has expired. This needs no branch, which would be
@@ -141,7 +141,7 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, const Colli
     std::size_t expired = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         memory.expired[expired] = static_cast<Index>(p);
-        expired += pairs.fresh[p];
+        expired += pairs.rebuilt[p];
     }
     memory.expired.resize(expired);
     memory.refit.clear();
@@ -190,13 +190,13 @@ PairToSearch pair_to_search(const CollisionInputs& inputs, const CollisionSettin
     pair.margin = settings.pair_skin * pair.scale.edge + std::max(closing(pairs, p), pairs.longer_motion[p]);
     if (pair.kind == PairKind::collider) return pair;
     pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
-    if (pair.kind == PairKind::bodies) pair.apart = least_distance(inputs, box, memory, pair.first, pair.second);
+    if (pair.kind == PairKind::bodies) pair.min_distance = least_distance(inputs, box, memory, pair.first, pair.second);
     return pair;
 }
 
 /// True if the boxes and spheres of two bodies show that no features are close enough to become candidates.
 bool is_far(const PairToSearch& pair) {
-    return pair.apart - pair.scale.zone >= pair.margin;
+    return pair.min_distance - pair.scale.zone >= pair.margin;
 }
 
 /// Splits the expired pairs into far pairs, which get an empty candidate list, and near pairs, whose trees must be
@@ -247,7 +247,7 @@ void add_found(std::span<const FoundCandidate> found, Column<Candidate>& candida
 void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> box,
                   Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
-    const bool anew = !(pairs.valid_until[p] > -infinity) || pairs.state[p] != PairState::apart;
+    const bool compare_all = !(pairs.valid_until[p] > -infinity) || pairs.state[p] != PairState::apart;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // The test for crossing surfaces precedes the search, because surfaces that do not cross need a smaller search
         // distance. A pair that is already known to be apart stays apart (PairTable::state).
@@ -258,9 +258,9 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     if (pair.kind == PairKind::self) {
         renew_leaf_pairs(
             self_motion_of(inputs, settings, pairs.state[p], pair.first, h, std::max(pairs.longer_motion[p], Real(0))),
-            box, anew, p, pairs);
+            box, compare_all, p, pairs);
         pair.leaf_pairs = pairs.leaf_pairs[p].searched.span();
-        pair.margin = least_spare(pairs.leaf_pairs[p].listed.span());
+        pair.margin = smallest_spare(pairs.leaf_pairs[p].listed.span());
     } else {
         pairs.candidates[p].clear();
         pairs.asleep_until[p].clear();
@@ -291,9 +291,9 @@ void search_expired(Executor& executor, const CollisionInputs& inputs, const Col
 std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     std::atomic<std::size_t> count{0};
     parallel_for(executor, pairs.size(), bounded_pairs_per_block, [&](std::size_t begin, std::size_t end) {
-        std::size_t of_block = 0;
-        for (std::size_t p = begin; p < end; ++p) of_block += pairs.candidates[p].size();
-        count.fetch_add(of_block, std::memory_order_relaxed);
+        std::size_t block_count = 0;
+        for (std::size_t p = begin; p < end; ++p) block_count += pairs.candidates[p].size();
+        count.fetch_add(block_count, std::memory_order_relaxed);
     });
     return count;
 }
@@ -303,10 +303,10 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
 /// small d are left out, because a new origin would hardly prolong the validity of their lists.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
-    constexpr Real good_part = 0.25;
+    constexpr Real rebase_fraction = 0.25;
     memory.rebase.resize(inputs.body.slot.size());
     const auto request = [&](Index b, Real skin) {
-        if (2 * inputs.body.displacement[b] > good_part * skin) memory.rebase[b] = 1;
+        if (2 * inputs.body.displacement[b] > rebase_fraction * skin) memory.rebase[b] = 1;
     };
     for (Index p : memory.expired) {
         const Real skin = settings.pair_skin * pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).edge;
@@ -322,7 +322,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     SearchMemory& memory = search.memory;
     const bool all = !settings.use_budgets;
     bool broad = mark_forgotten(inputs.body.slot.size(), all, search.body_valid_until, memory.body_forgotten);
-    if (broad) note_unmeasured(memory);
+    if (broad) mark_unmeasured(memory);
     broad |= mark_forgotten(inputs.collider.slot.size(), all, search.collider_valid_until, memory.collider_forgotten);
     bound_body_travels(executor, inputs, settings, h, memory);
     bound_collider_travels(inputs, h, memory);

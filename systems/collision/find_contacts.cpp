@@ -46,7 +46,7 @@ Index work_of_one(const PairTable& pairs, std::size_t p) {
 
 /// Work of testing all candidates of a pair, in the unit of candidates_per_block.
 std::int64_t work_of(const PairTable& pairs, std::size_t p) {
-    const Index count = pairs.looked_at[p];
+    const Index count = pairs.test_count[p];
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
 }
 
@@ -55,7 +55,7 @@ std::int64_t work_of(const PairTable& pairs, std::size_t p) {
 /// group of counted_pairs_per_block pairs.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
-    pairs.looked_at.resize(pairs.size());
+    pairs.test_count.resize(pairs.size());
     pairs.work.resize((pairs.size() + counted_pairs_per_block - 1) / counted_pairs_per_block);
     parallel_for(executor, pairs.size(), counted_pairs_per_block, [&](std::size_t begin, std::size_t end) {
         std::int64_t work = 0;
@@ -63,7 +63,7 @@ void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pai
             pairs.idle[p] = inputs.body.asleep[pairs.first[p]] &&
                             (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
                                                                  : body_stands_still(inputs, pairs.second[p]));
-            pairs.looked_at[p] = pairs.idle[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
+            pairs.test_count[p] = pairs.idle[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
             work += work_of(pairs, p);
         }
         pairs.work[begin / counted_pairs_per_block] = work;
@@ -88,7 +88,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
             for (; next * candidates_per_block < until; ++next) {
                 const std::int64_t candidate = (next * candidates_per_block - before) / work_of_one(pairs, p);
                 pairs.block[next] = {static_cast<Index>(p),
-                                     static_cast<Index>(std::min<std::int64_t>(candidate, pairs.looked_at[p]))};
+                                     static_cast<Index>(std::min<std::int64_t>(candidate, pairs.test_count[p]))};
             }
             before = until;
         }
@@ -105,7 +105,7 @@ void prefetch_list(const PairTable& pairs, Index p) {
 }
 
 void test_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b, PairTable& pairs) {
-    const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
+    const CandidateIndex begin = pairs.block[b], end = pairs.block[b + 1];
     Column<ContactRow>& found = pairs.found[b];
     Column<NearCandidate>& near = pairs.near[b];
     found.clear();

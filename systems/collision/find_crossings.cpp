@@ -60,31 +60,31 @@ public:
     }
 
 private:
-    /// Tests one candidate. `least`: lower bound of the distance between the surfaces [m]. For a round body, whose
-    /// feature is its core (centre or axis), the surface is nearer than the feature. Returns true if a full test was
-    /// needed.
-    bool test(const Candidate& candidate, Real least) {
+    /// Tests one candidate. `min_distance`: lower bound of the distance between the surfaces [m]. For a round body,
+    /// whose feature is its core (centre or axis), the surface is nearer than the feature. Returns true if a full test
+    /// was needed.
+    bool test(const Candidate& candidate, Real min_distance) {
         const FeaturePair features = features_of(candidate);
         const CandidateNodes node = nodes_of(inputs.surface, candidate);
         FourPoints x, displacement;
-        for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion.of(node[i]);
+        for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion.displacement(node[i]);
         const Real approach = greatest_approach(features, displacement);
-        if (!(approach > slow_fraction * least) || !can_move(node)) return false;
+        if (!(approach > slow_fraction * min_distance) || !can_move(node)) return false;
         for (std::size_t i = 0; i < 4; ++i) x[i] = inputs.position[node[i]];
-        const Real apart = nearest(features, node, x).offset.norm();
+        const Real distance = nearest(features, node, x).offset.norm();
         // If the surface of a round body already overlaps another surface, only a crossing of the core (centre or axis)
         // of the body is prevented.
-        const KeptApart kept = apart > scale.radii ? kept_of_radii(scale) : KeptApart{};
-        if (!(approach > slow_fraction * (apart - kept.distance))) return false;
-        const std::optional<Real> time = time_of_contact(features, x, displacement, kept);
-        if (!time || is_own_piece(features, node)) return true;
-        FourPoints met;
-        for (std::size_t i = 0; i < 4; ++i) met[i] = x[i] + *time * displacement[i];
-        add(candidate, features, nearest(features, node, met));
+        const ContactThreshold threshold = distance > scale.radii ? threshold_of_radii(scale) : ContactThreshold{};
+        if (!(approach > slow_fraction * (distance - threshold.distance))) return false;
+        const std::optional<Real> time = time_of_contact(features, x, displacement, threshold);
+        if (!time || is_near_at_rest(features, node)) return true;
+        FourPoints at_contact;
+        for (std::size_t i = 0; i < 4; ++i) at_contact[i] = x[i] + *time * displacement[i];
+        add(candidate, features, nearest(features, node, at_contact));
         return true;
     }
 
-    bool is_own_piece(FeaturePair features, const CandidateNodes& node) const {
+    bool is_near_at_rest(FeaturePair features, const CandidateNodes& node) const {
         if (kind != PairKind::self) return false;
         return features == FeaturePair::edge_edge
                    ? !was_far_at_rest(inputs, scale, std::array{node[0], node[1]}, std::array{node[2], node[3]})
@@ -100,20 +100,20 @@ private:
         return {stencil_of_point(node, c.weight), x[0] - c.nearest, c.nearest};
     }
 
-    void add(const Candidate& candidate, FeaturePair features, const NearestPoints& met) {
-        const Real length = met.offset.norm();
+    void add(const Candidate& candidate, FeaturePair features, const NearestPoints& at_contact) {
+        const Real length = at_contact.offset.norm();
         if (!(length > 0)) return;  // the features touch already at the start of the step, so they have no normal
-        const Vec3 normal = met.offset / length;
+        const Vec3 normal = at_contact.offset / length;
         Real along = 0;  // distance of the two nearest points along the normal, at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
-            along += met.stencil.weight[a] * normal.dot(inputs.position[met.stencil.node[a]]);
+            along += at_contact.stencil.weight[a] * normal.dot(inputs.position[at_contact.stencil.node[a]]);
         // `along` is measured at the start of the step, but along the normal at the time of contact. If the features
         // have rotated by more than a right angle in between, it can be negative although nothing overlapped at the
         // start.
-        found.push_back(
-            contact_row(*this, candidate.feature,
-                        features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
-                        met.stencil, {met.point, normal, std::max(along, scale.radii), scale.contact_distance}));
+        found.push_back(contact_row(
+            *this, candidate.feature,
+            features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
+            at_contact.stencil, {at_contact.point, normal, std::max(along, scale.radii), scale.contact_distance}));
     }
 
     std::span<const Real> asleep_until_;
@@ -178,7 +178,7 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
 std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const StepMotion& motion,
                          const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
                          Column<ContactRow>& found) {
-    const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
+    const CandidateIndex begin = pairs.block[b], end = pairs.block[b + 1];
     std::uint64_t tested = 0;
     std::size_t next = 0;
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
@@ -189,14 +189,14 @@ std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const 
         // Candidates that find_contacts has tested have a distance of at least block_nearest, so a motion below
         // slow_fraction * block_nearest cannot make them meet. Candidates that find_contacts skipped have gaps that the
         // motion cannot close, as long as the travel stays below the travel_bound of find_contacts.
-        const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
-        const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
+        const bool within_bound = reach.travel_bound <= pairs.travel_bound[p];
+        const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && within_bound;
         if (slow || !is_watched(inputs, pairs, p)) continue;
         if (has_cylinder(inputs, pairs, p))
             tested += find_cylinder_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, known, found);
         else if (pairs.kind[p] == PairKind::collider)
             tested += find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
-        else if (in_front && use_budgets)
+        else if (within_bound && use_budgets)
             tested += SurfaceCrossings({inputs, motion, pairs, p, found}, pairs.asleep_until[p].span())
                           .run(take_near(pairs.near[b].span(), p, next), reach.motion, reach.travel_bound);
         else
@@ -214,15 +214,15 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     // the search, and m is the margin of the search. If the list was made from the positions of this step, nothing has
     // moved since the search. The list is then valid up to T + m, so 2 d0 is added.
     const Real drifted =
-        pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
+        pairs.rebuilt[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
-    const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
+    const SelfMotion self_motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
     // If PairTable::travel_bound has reached valid_until, find_candidates kept the list only because the spare
     // distances of its pairs of leaves exceed the expected motion (is_valid, self_motion.h). They suffice if the nodes
     // move as expected.
-    const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(parts, motion);
-    return !within_reach && !holds_for_motion(parts, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
+    const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(self_motion, motion);
+    return !within_reach && !holds_for_motion(self_motion, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
 
 /// True if any pair moves further in this step than its candidate list allows. This happens almost never.
@@ -238,17 +238,17 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Co
 }
 
 /// Requests longer candidate lists for the pairs that move further than their lists allow. Returns the number of
-/// requests. `hopeless` counts the pairs for which no list is requested, because one of these is true: their list was
-/// already made in this step for a motion at least as long; the motion is not finite; `allowed` is false.
+/// requests. `not_extended` counts the pairs for which no list is requested, because one of these is true: their list
+/// was already made in this step for a motion at least as long; the motion is not finite; `allowed` is false.
 Index extend_lists(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
-                   bool allowed, PairTable& pairs, Index& hopeless) {
+                   bool allowed, PairTable& pairs, Index& not_extended) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
         if (!is_beyond_list(inputs, settings, motion, p, pairs)) continue;
         const Real length = reach_of(inputs, pairs, p, motion.h).motion;
-        const bool made_for_it = pairs.fresh[p] && length <= -pairs.longer_motion[p];
-        if (made_for_it || !allowed || !std::isfinite(length)) {
-            ++hopeless;
+        const bool already_extended = pairs.rebuilt[p] && length <= -pairs.longer_motion[p];
+        if (already_extended || !allowed || !std::isfinite(length)) {
+            ++not_extended;
             continue;
         }
         pairs.longer_motion[p] = length;
@@ -280,16 +280,16 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     crossings.beyond_lists = false;
     crossings.found_count = 0;
     if (!settings.continuous) return 0;
-    Index hopeless = 0;
+    Index not_extended = 0;
     const StepMotion motion{velocity_next, push_out, h};
     const Index extended = any_beyond_list(executor, inputs, settings, motion, pairs)
-                               ? extend_lists(inputs, settings, motion, crossings.extends_lists, pairs, hopeless)
+                               ? extend_lists(inputs, settings, motion, crossings.extends_lists, pairs, not_extended)
                                : 0;
     if (extended > 0) {
         crossings.beyond_lists = true;
         return extended;
     }
-    if (blocks == 0) return crossings.last_try ? 0 : hopeless;
+    if (blocks == 0) return crossings.last_attempt ? 0 : not_extended;
     if (crossings.found.size() < blocks) crossings.found.resize(blocks);
     std::atomic<std::uint64_t> tested{0};
     for (auto& found : crossings.found) found.clear();
@@ -299,11 +299,11 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     });
     crossings.tested += tested;
     for (const auto& found : crossings.found) crossings.found_count += found.size();
-    return crossings.last_try ? 0 : static_cast<Index>(crossings.found_count) + hopeless;
+    return crossings.last_attempt ? 0 : static_cast<Index>(crossings.found_count) + not_extended;
 }
 
 void use_crossings(PairTable& pairs, CrossingTable& crossings) {
-    if (crossings.last_try) {
+    if (crossings.last_attempt) {
         let_through(crossings, pairs);
         crossings.let_through += crossings.found_count;
         return;

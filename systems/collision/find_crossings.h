@@ -21,14 +21,14 @@ namespace skerry {
 /// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
 /// features meet. If a pair moves further than its candidate list is valid for, and extends_lists is set, no features
 /// are tested. Instead beyond_lists is set, and the attempt must be repeated with new lists from find_candidates. In
-/// the last attempt (last_try) crossings are permitted, and the function returns zero.
+/// the last attempt (last_attempt) crossings are permitted, and the function returns zero.
 Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
                      CrossingTable& crossings);
 
 /// Must be called after an attempt in which find_crossings has found crossings. Adds them to crossings.row, so that
-/// find_contacts adds these contacts in the next attempt at the step. After the last attempt (last_try) their pairs are
-/// marked as overlapping instead.
+/// find_contacts adds these contacts in the next attempt at the step. After the last attempt (last_attempt) their pairs
+/// are marked as overlapping instead.
 void use_crossings(PairTable& pairs, CrossingTable& crossings);
 
 }  // namespace skerry

@@ -43,12 +43,13 @@ struct PairCrossings : PairData {
                   Column<ContactRow>& rows)
         : PairData(all_inputs, pairs, p), motion(step_motion), found(rows) {}
 
-    TouchingFeature feature_of(TouchingFeature::Kind of_kind, const std::array<Index, 3>& node, Index of_shape,
-                               const KeptApart& kept) const {
-        TouchingFeature feature{.kind = of_kind, .of_shape = of_shape, .position = {}, .kept = kept};
+    TouchingFeature feature_of(TouchingFeature::Kind feature_kind, const std::array<Index, 3>& node,
+                               Index part_or_point, const ContactThreshold& threshold) const {
+        TouchingFeature feature{
+            .kind = feature_kind, .part_or_point = part_or_point, .position = {}, .threshold = threshold};
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             feature.position[i] = inputs.position[node[i]];
-            feature.displacement[i] = motion.of(node[i]);
+            feature.displacement[i] = motion.displacement(node[i]);
         }
         return feature;
     }

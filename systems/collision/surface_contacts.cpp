@@ -54,10 +54,10 @@ private:
         if (contact.side == Side::none || (is_core(corner) && !core_is_touched(candidate, contact.closest))) return;
         if (!within_reach(contact.distance, speed)) return;
         if (contact.side == Side::behind) {
-            const bool held = scale.radii > 0 && surfaces_ == Surfaces::apart
-                                  ? is_in_sight(c, node[0], contact.closest.nearest)
-                                  : is_truly_behind(c, node[0], corner, std::abs(contact.distance));
-            if (!held) return;
+            const bool is_contact = scale.radii > 0 && surfaces_ == Surfaces::apart
+                                        ? is_in_sight(c, node[0], contact.closest.nearest)
+                                        : is_truly_behind(c, node[0], corner, std::abs(contact.distance));
+            if (!is_contact) return;
         }
         add(candidate.feature, ContactKind::point_triangle, stencil_of_point(node, contact.closest.weight),
             {contact.closest.nearest, contact.normal, contact.distance, scale.contact_distance});
@@ -104,16 +104,16 @@ private:
                                             inputs.position[b] - inputs.position[a], scale);
     }
 
-    /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `place`
-    /// of the other body. The round body then touches `place` from behind, because elements of the other body are
+    /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `target`
+    /// of the other body. The round body then touches `target` from behind, because elements of the other body are
     /// inverted there. This test replaces is_truly_behind for round bodies: they touch many faces at once, so a nearer
     /// face excludes no contact.
-    bool is_in_sight(Index c, Index core, const Vec3& place) const {
-        const Vec3& from = inputs.position[core];
-        const Vec3 until = from + (1 - sight_slack) * (place - from);
+    bool is_in_sight(Index c, Index core, const Vec3& target) const {
+        const Vec3& start = inputs.position[core];
+        const Vec3 end = start + (1 - sight_slack) * (target - start);
         return none_of_point(c, [&](Index i) {
             const auto& n = inputs.surface.triangles.node[candidates[i].second];
-            return passes_through(from, until, inputs.position[n[0]], inputs.position[n[1]], inputs.position[n[2]]);
+            return passes_through(start, end, inputs.position[n[0]], inputs.position[n[1]], inputs.position[n[2]]);
         });
     }
 
@@ -130,7 +130,7 @@ void SurfaceContacts::add(Index p, Range range) {
         if (begin < count_) pair_[pair_count_++] = {p, begin, count_};
     };
     for_each_awake(settings_, pairs_, p, range, [&](Index c) {
-        if (count_ == most_candidates) {
+        if (count_ == max_candidates) {
             close_pair();
             test();
             begin = 0;
@@ -154,28 +154,28 @@ void SurfaceContacts::test() {
 void SurfaceContacts::list_nodes() {
     for (std::size_t i = 0; i < pair_count_; ++i) {
         const Candidate* const list = pairs_.candidates[pair_[i].pair].data();
-        for (std::size_t place = pair_[i].begin; place < pair_[i].end; ++place) {
-            const Candidate& candidate = candidate_[place] = list[row_[place]];
+        for (std::size_t slot = pair_[i].begin; slot < pair_[i].end; ++slot) {
+            const Candidate& candidate = candidate_[slot] = list[row_[slot]];
             prefetch_nodes(inputs_.surface, candidate);
         }
     }
-    for (Places& places : places_) places.count = 0;
-    for (std::size_t place = 0; place < count_; ++place) {
-        Places& places = places_[static_cast<std::size_t>(features_of(candidate_[place]))];
-        places.place[places.count++] = static_cast<std::uint16_t>(place);
-        node_[place] = nodes_of(inputs_.surface, candidate_[place]);
+    for (Slots& slots : slots_) slots.count = 0;
+    for (std::size_t slot = 0; slot < count_; ++slot) {
+        Slots& slots = slots_[static_cast<std::size_t>(features_of(candidate_[slot]))];
+        slots.slot[slots.count++] = static_cast<std::uint16_t>(slot);
+        node_[slot] = nodes_of(inputs_.surface, candidate_[slot]);
     }
 }
 
 void SurfaceContacts::measure_distances(FeaturePair kind) {
-    const Places& places = places_[static_cast<std::size_t>(kind)];
-    for (std::size_t first = 0; first < places.count; first += candidate_lanes) {
-        const std::size_t used = std::min(candidate_lanes, places.count - first);
+    const Slots& slots = slots_[static_cast<std::size_t>(kind)];
+    for (std::size_t first = 0; first < slots.count; first += candidate_lanes) {
+        const std::size_t used = std::min(candidate_lanes, slots.count - first);
         CandidateNodeLanes lanes;
         for (std::size_t lane = 0; lane < candidate_lanes; ++lane)
-            set_lane(lanes, lane, node_[places.place[lane < used ? first + lane : first]]);
+            set_lane(lanes, lane, node_[slots.slot[lane < used ? first + lane : first]]);
         const auto found = distances(kind, inputs_.position, lanes);
-        for (std::size_t lane = 0; lane < used; ++lane) distance_[places.place[first + lane]] = found[lane];
+        for (std::size_t lane = 0; lane < used; ++lane) distance_[slots.slot[first + lane]] = found[lane];
     }
 }
 
@@ -188,24 +188,24 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
                                                 pair_scale(inputs_, pairs_.kind[p], pairs_.first[p], pairs_.second[p]));
     const Real travel_base = pair_travel_base(inputs_, pairs_, p), close_until = travel_base - scale.edge_depth,
                near = near_distance(scale, pairs_.closing[p]),
-               can_meet =
+               meet_distance =
                    settings_.use_budgets ? (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction : infinity;
     Real* const asleep_until = pairs_.asleep_until[p].data();
-    ByPlace<std::uint16_t> close, meeting;
+    PerSlot<std::uint16_t> close, meeting;
     std::size_t close_count = 0, meeting_count = 0;
-    Real least = least_distance_;
+    Real smallest = smallest_distance_;
     // The loop has no branches, because their outcome would be hard to predict.
-    for (std::size_t place = awake.begin; place < awake.end; ++place) {
-        const Real zone = features_of(candidate_[place]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
-        const Real distance = distance_[place], apart = distance - scale.radii;
+    for (std::size_t slot = awake.begin; slot < awake.end; ++slot) {
+        const Real zone = features_of(candidate_[slot]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
+        const Real distance = distance_[slot], gap = distance - scale.radii;
         const bool is_close = distance <= std::max(near, zone) || !settings_.use_budgets;
-        asleep_until[row_[place]] = distance + (is_close ? close_until : travel_base - zone);
-        close[close_count] = meeting[meeting_count] = static_cast<std::uint16_t>(place);
+        asleep_until[row_[slot]] = distance + (is_close ? close_until : travel_base - zone);
+        close[close_count] = meeting[meeting_count] = static_cast<std::uint16_t>(slot);
         close_count += is_close;
-        meeting_count += apart < can_meet;
-        least = apart < least ? apart : least;
+        meeting_count += gap < meet_distance;
+        smallest = gap < smallest ? gap : smallest;
     }
-    least_distance_ = least;
+    smallest_distance_ = smallest;
     for (std::size_t i = 0; i < meeting_count; ++i) near_.push_back({p, row_[meeting[i]], distance_[meeting[i]]});
     if (close_count == 0) return;
     CloseTest close_test(inputs_, settings_, h_, pairs_, p, found_);

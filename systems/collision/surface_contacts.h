@@ -30,20 +30,20 @@ public:
     void test();
 
     /// Least distance between the surfaces of all tested candidates [m].
-    Real least_distance() const { return least_distance_; }
+    Real least_distance() const { return smallest_distance_; }
 
 private:
     // Capacity of the collection. It is so small that the data of all collected candidates fit into the first-level
     // cache.
-    static constexpr std::size_t most_candidates = 256;
+    static constexpr std::size_t max_candidates = 256;
 
     template <class T>
-    using ByPlace = std::array<T, most_candidates>;
+    using PerSlot = std::array<T, max_candidates>;
 
     /// Indices of the collected candidates of one kind (FeaturePair), ascending.
-    struct Places {
+    struct Slots {
         std::size_t count = 0;
-        ByPlace<std::uint16_t> place;
+        PerSlot<std::uint16_t> slot;
     };
     /// The collected candidates of one pair, in the order of its list. Candidates of points and triangles precede
     /// candidates of two edges.
@@ -62,15 +62,15 @@ private:
     PairTable& pairs_;
     Column<ContactRow>& found_;
     Column<NearCandidate>& near_;
-    Real least_distance_ = infinity;
+    Real smallest_distance_ = infinity;
 
     std::size_t count_ = 0, pair_count_ = 0;
-    ByPlace<AwakePair> pair_;       // pairs with at least one collected candidate
-    ByPlace<Index> row_;            // index of the collected candidate in the list of its pair
-    ByPlace<Candidate> candidate_;  // copy of the collected candidate
-    ByPlace<CandidateNodes> node_;
-    ByPlace<Real> distance_;        // [m]
-    std::array<Places, 2> places_;  // by FeaturePair
+    PerSlot<AwakePair> pair_;       // pairs with at least one collected candidate
+    PerSlot<Index> row_;            // index of the collected candidate in the list of its pair
+    PerSlot<Candidate> candidate_;  // copy of the collected candidate
+    PerSlot<CandidateNodes> node_;
+    PerSlot<Real> distance_;      // [m]
+    std::array<Slots, 2> slots_;  // by FeaturePair
 };
 
 }  // namespace skerry

@@ -97,63 +97,65 @@ private:
         return feature(body, FeatureKind::triangle, second_local(key) / (cylinder ? touches_of_triangle : 1));
     }
 
-    PartnerSurface partner(std::size_t c, const Feature& of) const {
+    PartnerSurface partner(std::size_t c, const Feature& touched) const {
         PartnerSurface surface =
-            partner_surface(inputs_, of.body, of.body == no_index ? contacts_.collider[c] : no_index);
-        if (of.set != no_index) surface.surface = with_given(surface.surface, sets_.surface[of.set]);
+            partner_surface(inputs_, touched.body, touched.body == no_index ? contacts_.collider[c] : no_index);
+        if (touched.set != no_index) surface.surface = with_given(surface.surface, sets_.surface[touched.set]);
         return surface;
     }
-    bool sets_friction(const Feature& of) const {
-        return of.set != no_index && sets_.surface[of.set].dynamic_friction >= 0;
+    bool sets_friction(const Feature& touched) const {
+        return touched.set != no_index && sets_.surface[touched.set].dynamic_friction >= 0;
     }
-    bool sets_restitution(const Feature& of) const {
-        return of.set != no_index && sets_.surface[of.set].restitution >= 0;
+    bool sets_restitution(const Feature& touched) const {
+        return touched.set != no_index && sets_.surface[touched.set].restitution >= 0;
     }
 
     void combine(std::size_t c, const Feature& own, const Feature& other) const {
-        const SurfaceProperties of_own = partner(c, own).surface, of_other = partner(c, other).surface;
-        const SurfaceProperties mean = mean_surface(of_own, of_other);
+        const SurfaceProperties own_surface = partner(c, own).surface, other_surface = partner(c, other).surface;
+        const SurfaceProperties mean = mean_surface(own_surface, other_surface);
         if (sets_restitution(own) || sets_restitution(other)) contacts_.restitution[c] = mean.restitution;
         if (!sets_friction(own) && !sets_friction(other)) return;
         const Vec3& normal = contacts_.normal[c];
         const FrictionShape shape = shape_of(own, normal);
         const MeanShape both =
-            mean_shape(shape, of_other.dynamic_friction < 0 ? shape : shape_of(other, normal), normal);
+            mean_shape(shape, other_surface.dynamic_friction < 0 ? shape : shape_of(other, normal), normal);
         contacts_.static_friction[c] = both.scale * mean.static_friction;
         contacts_.dynamic_friction[c] = both.scale * mean.dynamic_friction;
         contacts_.friction_axis[c] = both.axis;
     }
 
-    FrictionShape shape_of(const Feature& of, const Vec3& normal) const {
-        if (of.set == no_index || sets_.across[of.set] == 1) return {};
-        const Vec3 direction = present_direction(of);
+    FrictionShape shape_of(const Feature& touched, const Vec3& normal) const {
+        if (touched.set == no_index || sets_.across[touched.set] == 1) return {};
+        const Vec3 direction = present_direction(touched);
         const Vec3 tangent = direction - normal.dot(direction) * normal;
         const Real length = tangent.norm();
         if (!(length > least_projection * direction.norm())) return {};
-        return {tangent / length, sets_.across[of.set]};
+        return {tangent / length, sets_.across[touched.set]};
     }
 
     /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of carried()
     /// over the faces at the feature that are in the set; if this sum is zero, over all faces at the feature.
-    Vec3 present_direction(const Feature& of) const {
+    Vec3 present_direction(const Feature& touched) const {
         for (const bool in_set : {true, false}) {
             Vec3 sum = Vec3::Zero();
-            for_each_triangle(of, [&](Index t) {
-                if (!in_set || row_at(set_of_.triangle, t) == of.set) sum += carried(sets_.direction[of.set], t);
+            for_each_triangle(touched, [&](Index t) {
+                if (!in_set || row_at(set_of_.triangle, t) == touched.set)
+                    sum += carried(sets_.direction[touched.set], t);
             });
             if (!sum.isZero(0)) return sum;
         }
         return Vec3::Zero();
     }
-    void for_each_triangle(const Feature& of, auto&& visit) const {
+    void for_each_triangle(const Feature& touched, auto&& visit) const {
         const SurfaceTables& surface = inputs_.surface;
-        if (of.kind == FeatureKind::triangle) {
-            visit(of.row);
-        } else if (of.kind == FeatureKind::edge) {
-            for (const Index t : surface.edges.triangle[of.row])
+        if (touched.kind == FeatureKind::triangle) {
+            visit(touched.row);
+        } else if (touched.kind == FeatureKind::edge) {
+            for (const Index t : surface.edges.triangle[touched.row])
                 if (t != no_index) visit(t);
         } else {
-            for (Index i = surface.vertices.triangle_begin[of.row]; i < surface.vertices.triangle_end[of.row]; ++i)
+            for (Index i = surface.vertices.triangle_begin[touched.row]; i < surface.vertices.triangle_end[touched.row];
+                 ++i)
                 visit(surface.vertex_triangle[i]);
         }
     }
@@ -195,9 +197,10 @@ MeanShape mean_shape(const FrictionShape& first, const FrictionShape& second, co
     if (first.across == 1 && second.across == 1) return {};
     const TangentFrame frame = tangent_frame(normal);
     const Symmetric2 a = tensor_of(first, frame), b = tensor_of(second, frame);
-    const Real of_a = 1 / std::sqrt(first.across), of_b = 1 / std::sqrt(second.across);
-    const Symmetric2 sum{of_a * a.xx + of_b * b.xx, of_a * a.xy + of_b * b.xy, of_a * a.yy + of_b * b.yy};
-    const Real factor = 1 / std::sqrt(of_a * of_b * sum.determinant());
+    const Real first_scale = 1 / std::sqrt(first.across), second_scale = 1 / std::sqrt(second.across);
+    const Symmetric2 sum{first_scale * a.xx + second_scale * b.xx, first_scale * a.xy + second_scale * b.xy,
+                         first_scale * a.yy + second_scale * b.yy};
+    const Real factor = 1 / std::sqrt(first_scale * second_scale * sum.determinant());
     const Real middle = (sum.xx + sum.yy) / 2, radius = std::hypot((sum.xx - sum.yy) / 2, sum.xy);
     MeanShape mean;
     mean.scale = factor * (middle + radius);

@@ -31,7 +31,7 @@ public:
             while (p < inputs_.pair.size() && inputs_.pair[p] < pair) ++p;
             const auto end = static_cast<std::size_t>(
                 std::upper_bound(key.begin() + static_cast<std::ptrdiff_t>(begin), key.end(), pair,
-                                 [](std::uint64_t of, const ContactKey& row) { return of < row.pair; }) -
+                                 [](std::uint64_t pair_key, const ContactKey& row) { return pair_key < row.pair; }) -
                 key.begin());
             take(begin, end, p < inputs_.pair.size() && inputs_.pair[p] == pair && inputs_.idle[p] != 0);
             begin = end;
@@ -87,11 +87,11 @@ bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& in
 
     list_sources(contacts, pairs, kept, memory.source);
     const std::span<const Index> source = memory.source;
-    const auto gather = [source](auto& to, auto&& of_kept, auto&& of_step) {
+    const auto gather = [source](auto& to, auto&& kept_column, auto&& step_column) {
         to.resize(source.size());
         for (std::size_t row = 0; row < source.size(); ++row)
-            to[row] = source[row] < 0 ? of_step(static_cast<std::size_t>(~source[row]))
-                                      : of_kept(static_cast<std::size_t>(source[row]));
+            to[row] = source[row] < 0 ? step_column(static_cast<std::size_t>(~source[row]))
+                                      : kept_column(static_cast<std::size_t>(source[row]));
     };
     RestingContactTable& next = memory.next;
     for_each_column_of(next.contact, kept.contact, contacts, [&](auto& to, const auto& old, const auto& now) {

@@ -8,53 +8,53 @@
 namespace skerry {
 namespace {
 
-// `least_shift`: the smallest block has 2^least_shift contacts, which take a few microseconds, about as long as it
-// takes a worker to start. `most_blocks`: largest number of blocks. It is small, because the table Places has an entry
-// for each pair of blocks.
-constexpr std::size_t least_shift = 7, most_blocks = 64;
+// `min_shift`: the smallest block has 2^min_shift contacts, which take a few microseconds, about as long as it
+// takes a worker to start. `max_blocks`: largest number of blocks. It is small, because BlockTable has an
+// entry for each pair of blocks.
+constexpr std::size_t min_shift = 7, max_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.
 struct Blocks {
-    std::size_t shift = least_shift;
+    std::size_t shift = min_shift;
     std::size_t contacts;
 
     explicit Blocks(std::size_t count) : contacts(count) {
-        while (of(count - 1) >= most_blocks) ++shift;
+        while (block_of(count - 1) >= max_blocks) ++shift;
     }
-    std::size_t of(std::size_t contact) const { return contact >> shift; }
-    std::size_t count() const { return of(contacts - 1) + 1; }
+    std::size_t block_of(std::size_t contact) const { return contact >> shift; }
+    std::size_t count() const { return block_of(contacts - 1) + 1; }
 
     /// Calls body(block, begin, end) for all blocks.
     template <class Body>
     void run(Executor& executor, Body&& body) const {
         parallel_for(executor, contacts, std::size_t{1} << shift,
-                     [&](std::size_t begin, std::size_t end) { body(of(begin), begin, end); });
+                     [&](std::size_t begin, std::size_t end) { body(block_of(begin), begin, end); });
     }
 };
 
 /// Table over pairs of blocks (a, b). Each entry first counts the contacts of block a whose region begins in block b.
 /// cut() replaces the count by the index of the first of these contacts in a list that is sorted by b, then by a. A
 /// region begins at its first contact.
-class Places {
+class BlockTable {
 public:
-    Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {
-        place_.assign(blocks * blocks, 0);
+    BlockTable(std::size_t blocks, Column<Index>& entry) : blocks_(blocks), entry_(entry) {
+        entry_.assign(blocks * blocks, 0);
     }
     /// Table entries for the contacts of `block`, indexed by the block in which the region of a contact begins. Entries
     /// for later blocks are unused, because no region begins after its contacts.
-    Index* of(std::size_t block) { return place_.data() + block * blocks_; }
+    Index* row(std::size_t block) { return entry_.data() + block * blocks_; }
 
     /// Replaces the counts in the table by indices in a list of all contacts. The list is sorted by the block in which
     /// the region of a contact begins, then by contact. Returns for each block the index in the list of the first
     /// contact whose region begins in the block, then the length of the list.
-    std::array<Index, most_blocks + 1> cut() {
-        std::array<Index, most_blocks + 1> begin;
+    std::array<Index, max_blocks + 1> cut() {
+        std::array<Index, max_blocks + 1> begin;
         Index sum = 0;
         for (std::size_t first = 0; first < blocks_; ++first) {
             begin[first] = sum;
             for (std::size_t block = first; block < blocks_; ++block) {
-                Index& place = of(block)[first];
-                place = std::exchange(sum, sum + place);
+                Index& entry = row(block)[first];
+                entry = std::exchange(sum, sum + entry);
             }
         }
         begin[blocks_] = sum;
@@ -63,11 +63,11 @@ public:
 
 private:
     std::size_t blocks_;
-    Column<Index>& place_;
+    Column<Index>& entry_;
 };
 
 void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnionFind& sets) {
-    parallel_for(executor, joints.size(), std::size_t{1} << least_shift, [&](std::size_t begin, std::size_t end) {
+    parallel_for(executor, joints.size(), std::size_t{1} << min_shift, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j)
             joints[j].join_nodes([&](Index first, Index second) { sets.join(first, second); });
     });
@@ -77,14 +77,14 @@ void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnio
 /// cluster) of `node`. Returns a node of the joined set, or no_index if no node can move.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets) {
-    Index one = no_index;
+    Index joined = no_index;
     for (std::size_t a = 0; a < 4; ++a) {
         const Index at = stencil.node[a];
         if (stencil.weight[a] == 0 || !(inverse_mass[at] > 0)) continue;
         const Index other = leader(at);
-        one = one == no_index ? other : sets.join(one, other);
+        joined = joined == no_index ? other : sets.join(joined, other);
     }
-    return one;
+    return joined;
 }
 
 template <class Leader>
@@ -146,7 +146,7 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
         unite_all(
             executor, blocks, stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, sets,
             contact_region);
-    groups.leave_out_elsewhere(stencil, contact_region);
+    groups.leave_out_other_ranks(stencil, contact_region);
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (contact_region[i] == no_index) continue;
@@ -156,21 +156,21 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
     });
     // contact_region now holds the root of the set of each contact. The next loop replaces it by the first contact of
     // the region.
-    Places places(blocks.count(), memory.place);
-    std::array<Index, most_blocks + 1> first_region{};  // by block: number of the first region that begins in the block
+    BlockTable table(blocks.count(), memory.entry);
+    std::array<Index, max_blocks + 1> first_region{};  // by block: number of the first region that begins in the block
     blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        Index* const count = places.of(block);
+        Index* const count = table.row(block);
         Index beginning = 0;
         for (std::size_t i = begin; i < end; ++i) {
             if (contact_region[i] == no_index) continue;
             const Index first = contact_region[i] = sets.first_item(contact_region[i]);
-            ++count[blocks.of(static_cast<std::size_t>(first))];
+            ++count[blocks.block_of(static_cast<std::size_t>(first))];
             beginning += first == static_cast<Index>(i);
         }
         first_region[block + 1] = beginning;
     });
     for (std::size_t block = 0; block < blocks.count(); ++block) first_region[block + 1] += first_region[block];
-    const std::array<Index, most_blocks + 1> begin_of = places.cut();
+    const std::array<Index, max_blocks + 1> begin_of = table.cut();
     const Index region_count = first_region[blocks.count()], item_count = begin_of[blocks.count()];
 
     memory.by_block.resize(static_cast<std::size_t>(item_count));
@@ -178,10 +178,10 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
     contacts.offset.resize(static_cast<std::size_t>(region_count) + 1);
     contacts.offset[region_count] = item_count;
     blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        Index* const place = places.of(block);
+        Index* const next = table.row(block);
         for (std::size_t i = begin; i < end; ++i)
             if (contact_region[i] != no_index)
-                memory.by_block[place[blocks.of(static_cast<std::size_t>(contact_region[i]))]++] =
+                memory.by_block[next[blocks.block_of(static_cast<std::size_t>(contact_region[i]))]++] =
                     static_cast<Index>(i);
     });
     blocks.run(executor, [&](std::size_t block, std::size_t, std::size_t) {

@@ -18,7 +18,7 @@ struct BlockLabels {
     Column<Index> by_block;  // contacts, sorted by the block in which the region of a contact begins
     // Entry for each pair of blocks (a, b): index in `by_block` for the next contact of block a whose region begins in
     // block b.
-    Column<Index> place;
+    Column<Index> entry;
 };
 
 /// Writes the region of each contact and the contacts of each region, and returns the number of regions. Regions are

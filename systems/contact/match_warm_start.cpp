@@ -26,9 +26,9 @@ Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
 }
 
 /// Cursor over the ascending keys of a table. The keys passed to find() must ascend, too.
-class SearchPlace {
+class KeyCursor {
 public:
-    SearchPlace(std::span<const ContactKey> keys, const ContactKey& first)
+    KeyCursor(std::span<const ContactKey> keys, const ContactKey& first)
         : keys_(keys), row_(static_cast<std::size_t>(std::ranges::lower_bound(keys, first) - keys.begin())) {}
 
     /// True if the table has a row with this key. In this case row() returns the row.
@@ -88,14 +88,14 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         // Each block searches once for its first key in the two tables of old impulses, `last` and `resting`. Then it
         // reads the contacts and these tables side by side in key order.
-        SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
+        KeyCursor last_cursor(last.key, key[begin]), resting_cursor(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
-            if (of_last.find(key[i])) {
-                const std::size_t old = of_last.row();
+            if (last_cursor.find(key[i])) {
+                const std::size_t old = last_cursor.row();
                 impulse[i] = scale * turn(last.impulse[old], last.normal[old], normal[i]);
-            } else if (of_resting.find(key[i])) {
-                const std::size_t old = of_resting.row();
+            } else if (resting_cursor.find(key[i])) {
+                const std::size_t old = resting_cursor.row();
                 impulse[i] = kick / resting.step[old] *
                              turn(resting.contact.impulse[old], resting.contact.normal[old], normal[i]);
             }
@@ -111,17 +111,18 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
     // between the normals of the vanished contact and of the contact that takes over its impulse
     constexpr Real least_cosine = 0.9;
     const Real scale = kick / last.step[0];
-    const auto hand_on = [&](std::size_t gone, Rows rows, Real reach) {
+    const auto pass_on = [&](std::size_t vanished, Rows rows, Real reach) {
         std::size_t nearest = rows.end;
-        Real least = reach * reach;
+        Real nearest_squared = reach * reach;
         for (std::size_t i = rows.begin; i < rows.end; ++i) {
-            const Real away = (now.point[i] - last.point[gone]).squaredNorm();
-            if (!(away < least) || !(now.normal[i].dot(last.normal[gone]) > least_cosine)) continue;
-            least = away;
+            const Real distance_squared = (now.point[i] - last.point[vanished]).squaredNorm();
+            if (!(distance_squared < nearest_squared) || !(now.normal[i].dot(last.normal[vanished]) > least_cosine))
+                continue;
+            nearest_squared = distance_squared;
             nearest = i;
         }
         if (nearest != rows.end)
-            impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
+            impulse[nearest] += scale * turn(last.impulse[vanished], last.normal[vanished], now.normal[nearest]);
     };
     // A block never splits a pair. An impulse only passes to a contact of the same pair, so no two blocks write the
     // same impulse.
@@ -131,11 +132,11 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
             const std::uint64_t pair = last.key[row].pair;
             const Rows rows = rows_of_pair(now.key, pair);
             const Real reach = rows.begin < rows.end ? reach_of_pair(now, rows.begin) : 0;
-            std::size_t place = rows.begin;
+            std::size_t now_row = rows.begin;
             for (; row < end && last.key[row].pair == pair; ++row) {
-                while (place < rows.end && now.key[place] < last.key[row]) ++place;
-                const bool stays = place < rows.end && now.key[place] == last.key[row];
-                if (!stays && reach > 0 && last.impulse[row] != Vec3::Zero()) hand_on(row, rows, reach);
+                while (now_row < rows.end && now.key[now_row] < last.key[row]) ++now_row;
+                const bool persists = now_row < rows.end && now.key[now_row] == last.key[row];
+                if (!persists && reach > 0 && last.impulse[row] != Vec3::Zero()) pass_on(row, rows, reach);
             }
         }
     });
@@ -152,14 +153,14 @@ void store_warm_start(Executor& executor, const ContactsDone& done, Real kick, W
     last.point.resize(done.point.size());
     last.step.assign(count == 0 ? 0 : 1, kick);
     parallel_for(executor, count, stored_block, [&](std::size_t begin, std::size_t end) {
-        const auto keep = [&](const auto& from, auto& to) {
+        const auto copy_rows = [&](const auto& from, auto& to) {
             std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin),
                       from.begin() + static_cast<std::ptrdiff_t>(end), to.begin() + static_cast<std::ptrdiff_t>(begin));
         };
-        keep(done.key, last.key);
-        keep(done.normal, last.normal);
-        keep(done.impulse, last.impulse);
-        if (!done.point.empty()) keep(done.point, last.point);
+        copy_rows(done.key, last.key);
+        copy_rows(done.normal, last.normal);
+        copy_rows(done.impulse, last.impulse);
+        if (!done.point.empty()) copy_rows(done.point, last.point);
     });
 }
 

@@ -80,7 +80,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
                                  const RoundSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
                                  Friction friction) {
     const std::size_t count = contacts.size();
-    const TouchPlaces places{contacts.point.span(), contacts.distance.span()};
+    const TouchPoints places{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // The contacts are divided into a limited number of parts, so that the sums over each part need no allocation. The
     // borders of the parts depend only on the number of contacts.

@@ -21,11 +21,11 @@ namespace skerry {
 
 /// Contact points and distances of ContactTable. They are read only for cylinders, whose surface points do not follow
 /// from the normal alone.
-struct TouchPlaces {
+struct TouchPoints {
     std::span<const Vec3> point{};
     std::span<const Real> distance{};
 
-    static TouchPlaces bind(const Binder& binder, const ContactTable& contact) {
+    static TouchPoints bind(const Binder& binder, const ContactTable& contact) {
         return {.point = binder.read(contact.point), .distance = binder.read(contact.distance)};
     }
 
@@ -75,13 +75,13 @@ struct RigidNodes {
     /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder the point is the
     /// centre. `weight`: the sum of the weights, used only for cylinders.
     Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
-                     const TouchPlaces& places) const {
+                     const TouchPoints& places) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
         return weight * (places.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
     }
     /// Part of the relative velocity at a contact that stems from the spins of round bodies [m/s]. `spin(r)`: spin of
     /// row r of RigidBodyTable [rad/s].
-    Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPlaces& places,
+    Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPoints& places,
                  auto&& spin) const {
         Vec3 sum = Vec3::Zero();
         if (round_radius.empty()) return sum;
@@ -141,9 +141,10 @@ struct SolvedCables {
 
     /// Calls visit(node) for each node of a cable that impulses can move.
     void for_each_moving_node(std::size_t cable, std::span<const Real> inverse_mass, auto&& visit) const {
-        for (const Stencil& of : rows_of(stencil, block[cable].points))
+        for (const Stencil& point_stencil : rows_of(stencil, block[cable].points))
             for (std::size_t a = 0; a < 4; ++a)
-                if (of.weight[a] != 0 && inverse_mass[static_cast<std::size_t>(of.node[a])] > 0) visit(of.node[a]);
+                if (point_stencil.weight[a] != 0 && inverse_mass[static_cast<std::size_t>(point_stencil.node[a])] > 0)
+                    visit(point_stencil.node[a]);
     }
 };
 
@@ -173,7 +174,7 @@ struct NodeGroups {
     }
 
     /// True if another rank solves the equations of the joints, ties and cables that act on a node.
-    bool is_elsewhere(Index node) const {
+    bool is_on_other_rank(Index node) const {
         return !elsewhere.empty() &&
                elsewhere[static_cast<std::size_t>(rigid.node_body[static_cast<std::size_t>(node)])] != 0;
     }
@@ -194,10 +195,10 @@ struct NodeGroups {
     }
     /// Sets contact_region to no_index for the rows that another rank solves. Only rows of ties and of held nodes are
     /// concerned, because contacts with moving nodes have been sent to that rank.
-    void leave_out_elsewhere(std::span<const Stencil> stencil, std::span<Index> contact_region) const {
+    void leave_out_other_ranks(std::span<const Stencil> stencil, std::span<Index> contact_region) const {
         if (elsewhere.empty()) return;
         for (std::size_t i = 0; i < stencil.size(); ++i)
-            if (is_elsewhere(stencil[i].node[0])) contact_region[i] = no_index;
+            if (is_on_other_rank(stencil[i].node[0])) contact_region[i] = no_index;
     }
     /// A node that impulses of the joint `joint` can move; the region of this node is the region of the joint.
     Index node_of_joint(std::size_t joint) const { return joints[joint].moving_node(); }

@@ -97,7 +97,7 @@ Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
 /// A point of the first body of a tie: one tied node, or the mean point of all nodes of the tie.
 struct TiedPoint {
     Vec3 position = Vec3::Zero();  // [m]
-    FrameMotion of_frame;          // motion of the frame of its body
+    FrameMotion body_motion;       // motion of the frame of its body
 };
 
 TiedPoint tied_point(const TieInputs& ties, std::size_t t, Index node) {
@@ -109,10 +109,10 @@ TiedPoint tied_point(const TieInputs& ties, std::size_t t, Index node) {
 TiedPoint mean_of_points(const TieInputs& ties, std::size_t t) {
     TiedPoint mean;
     ties.for_each_share(t, [&](Index node, Real share) {
-        const TiedPoint of = tied_point(ties, t, node);
-        mean.position += share * of.position;
-        mean.of_frame.turning += share * of.of_frame.turning;
-        mean.of_frame.acceleration += share * of.of_frame.acceleration;
+        const TiedPoint tied = tied_point(ties, t, node);
+        mean.position += share * tied.position;
+        mean.body_motion.turning += share * tied.body_motion.turning;
+        mean.body_motion.acceleration += share * tied.body_motion.acceleration;
     });
     return mean;
 }
@@ -124,14 +124,14 @@ public:
     /// `weight`: weight of node `k` in the stencil; 0 for a mean point, whose nodes have stencils of their own.
     TieRow(const TieInputs& ties, const TieStep& step, std::size_t t, std::size_t k, const TiedPoint& point,
            Real weight)
-        : ties_(ties), step_(step), t_(t), k_(k), point_(point), place_(ties.place(t, k)) {
+        : ties_(ties), step_(step), t_(t), k_(k), point_(point), target_(ties.target(t, k)) {
         const TieTable& tie = ties.tie;
         const Index node = ties.row_of(tie.first[t], tie.node[k]);
         stencil_ = {{node, node, node, node}, {weight, 0, 0, 0}};
         if (ties.deforms(tie.second[t])) {
             for (std::size_t a = 0; a < 3; ++a) {
                 stencil_.node[a + 1] = ties.row_of(tie.second[t], tie.corner[k][a]);
-                stencil_.weight[a + 1] = -place_.weight[static_cast<Index>(a)];
+                stencil_.weight[a + 1] = -target_.weight[static_cast<Index>(a)];
             }
         } else if (const Index frame = ties.frame(tie.second[t]);
                    frame != no_index && ties.holder[static_cast<std::size_t>(frame)] == no_index) {
@@ -142,28 +142,28 @@ public:
 
     const Stencil& stencil() const { return stencil_; }
     const Vec3& point() const { return point_.position; }
-    const Vec3& normal() const { return place_.normal; }
+    const Vec3& normal() const { return target_.normal; }
 
     /// Velocity that the row prescribes for the node relative to the nodes of the other object [m/s]. The formula is
     /// derived in docs/methods/ties.md.
     Vec3 demanded() const {
         const TieTable& tie = ties_.tie;
         const Index second = tie.second[t_], frame = ties_.frame(second);
-        const FrameMotion& of_first = point_.of_frame;
-        const FrameMotion of_second = frame_motion(ties_, frame, point(), no_index);
+        const FrameMotion& first_motion = point_.body_motion;
+        const FrameMotion second_motion = frame_motion(ties_, frame, point(), no_index);
         Vec3 velocity = Vec3::Zero();
         if (tie.collider[t_] != no_index)
-            velocity = led_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], place_.point, step_.h);
+            velocity = led_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], target_.point, step_.h);
         else if (ties_.deforms(second) && frame == no_index)
             velocity = turning_offset(ties_, t_, k_, step_.h);
         else if (!ties_.deforms(second) && frame != no_index && stencil_.weight[1] == 0)
-            velocity = of_second.velocity;
-        Vec3 error = point() - place_.point;
-        if (tie.kind[t_] == TieKind::slide) error = place_.normal.dot(error) * place_.normal;
+            velocity = second_motion.velocity;
+        Vec3 error = point() - target_.point;
+        if (tie.kind[t_] == TieKind::slide) error = target_.normal.dot(error) * target_.normal;
         Vec3 pull = error / step_.h;
-        const Real fastest = step_.recovery_speed + of_first.turning.norm() + of_second.turning.norm();
+        const Real fastest = step_.recovery_speed + first_motion.turning.norm() + second_motion.turning.norm();
         if (const Real speed = pull.norm(); speed > fastest) pull *= fastest / speed;
-        return velocity - pull - step_.h / 2 * (of_first.acceleration - of_second.acceleration);
+        return velocity - pull - step_.h / 2 * (first_motion.acceleration - second_motion.acceleration);
     }
 
 private:
@@ -171,7 +171,7 @@ private:
     const TieStep& step_;
     std::size_t t_, k_;
     TiedPoint point_;
-    TiePlace place_;
+    TieTarget target_;
     Stencil stencil_;
 };
 
@@ -232,13 +232,13 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
         return;
     }
     Vec3 impulse = Vec3::Zero();
-    for (const Vec3& of_node : rows_of(tie.impulse.span(), tie.nodes[t])) impulse += scale * of_node;
+    for (const Vec3& node_impulse : rows_of(tie.impulse.span(), tie.nodes[t])) impulse += scale * node_impulse;
     for (Index k = 0; k < 3; ++k) blocks.impulse[begin + k] = impulse[k];
     append_block({.cable = static_cast<Index>(t),
                   .points = {begin, static_cast<Index>(blocks.stencil.size())},
                   .solved = true,
                   .by_length = false,
-                  .wanted = 0,
+                  .prescribed = 0,
                   .released = 0,
                   .mobility = blocks.mobilities,
                   .is_tie = true,
@@ -255,15 +255,15 @@ bool TieInputs::rests(std::size_t t) const {
            (second == no_index || body_asleep[static_cast<std::size_t>(second)] != 0);
 }
 
-TiePlace TieInputs::place(std::size_t t, std::size_t k) const {
+TieTarget TieInputs::target(std::size_t t, std::size_t k) const {
     const Index second = tie.second[t], frame = this->frame(second);
     if (deforms(second)) {
         const Corners corner = corners_of(*this, t, k);
-        const Mat3 of_triangle = triangle_axes(corner);
+        const Mat3 axes_of_triangle = triangle_axes(corner);
         const Vec3& node = position[static_cast<std::size_t>(row_of(tie.first[t], tie.node[k]))];
         const Vec3 weight = tie.kind[t] == TieKind::slide ? weights_at(corner, node) : tie.weight[k];
-        const Vec3 offset = (frame == no_index ? of_triangle : mesh_axes(*this, frame)) * tie.place[k];
-        return {sum_of(corner, weight) + offset, of_triangle.col(2), weight};
+        const Vec3 offset = (frame == no_index ? axes_of_triangle : mesh_axes(*this, frame)) * tie.place[k];
+        return {sum_of(corner, weight) + offset, axes_of_triangle.col(2), weight};
     }
     if (frame != no_index) {
         const auto r = static_cast<std::size_t>(frame);
@@ -271,8 +271,8 @@ TiePlace TieInputs::place(std::size_t t, std::size_t k) const {
         return {center[r] + turn * (tie.place[k] - rest_center[r]), turn * tie.normal[k]};
     }
     if (tie.collider[t] == no_index) return {tie.place[k], tie.normal[k]};
-    const RigidMotion& of = motion[static_cast<std::size_t>(tie.collider[t])];
-    return {of.position + of.rotation * tie.place[k], of.rotation * tie.normal[k]};
+    const RigidMotion& pose = motion[static_cast<std::size_t>(tie.collider[t])];
+    return {pose.position + pose.rotation * tie.place[k], pose.rotation * tie.normal[k]};
 }
 
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,

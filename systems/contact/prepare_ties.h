@@ -19,7 +19,7 @@
 namespace skerry {
 
 /// Point of the other object to which a node is tied, at the start of the step.
-struct TiePlace {
+struct TieTarget {
     Vec3 point;   // [m]
     Vec3 normal;  // unit normal of the surface
     // Weights of the corners of the triangle, if the other object is a deformable body.
@@ -108,7 +108,7 @@ struct TieInputs {
     /// Point of the other object to which tied node `k` is tied, at the start of the step. `k`: row of the node in the
     /// columns of TieTable that have one entry per tied node; for the mean point of a `ball` the row of its first node.
     /// `t`: row of the tie.
-    TiePlace place(std::size_t t, std::size_t k) const;
+    TieTarget target(std::size_t t, std::size_t k) const;
 };
 
 /// Frame of a triangle: the first axis along its first edge, the third along its normal.

@@ -49,7 +49,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
         if (i + ahead < stencil.size()) fetch(stencil[i + ahead]);
         contact_region[i] = unite(stencil[i], inverse_mass, leader, sets);
     }
-    groups.leave_out_elsewhere(stencil, contact_region);
+    groups.leave_out_other_ranks(stencil, contact_region);
     for (std::size_t i = 0; i < contact_region.size(); ++i) {
         if (i + ahead < contact_region.size() && contact_region[i + ahead] != no_index)
             sets.fetch(contact_region[i + ahead]);
@@ -58,8 +58,8 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     return sets.number_count;
 }
 
-Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
-                       std::span<Index> contact_region) {
+Index label_single_region(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                          std::span<Index> contact_region) {
     bool any = false;
     for (std::size_t i = 0; i < stencil.size(); ++i) {
         const bool moves = has_moving_node(stencil[i], inverse_mass);
@@ -99,13 +99,13 @@ Index collect_connections(const NodeGroups& groups, std::span<const Real> invers
     const std::size_t joints = groups.joints.size(), cables = groups.cables.block.size();
     regions.joints.clear();
     regions.cables.clear();
-    const auto of_node = [&](Index node) { return groups.is_elsewhere(node) ? no_index : number(node); };
-    const auto of_joint = [&](std::size_t j) { return of_node(groups.node_of_joint(j)); };
-    const auto of_cable = [&](std::size_t c) { return of_node(groups.node_of_cable(c, inverse_mass)); };
-    for (std::size_t j = 0; j < joints; ++j) region_count = std::max(region_count, of_joint(j) + 1);
-    for (std::size_t c = 0; c < cables; ++c) region_count = std::max(region_count, of_cable(c) + 1);
-    if (joints > 0) collect(joints, of_joint, region_count, regions.joints);
-    if (cables > 0) collect(cables, of_cable, region_count, regions.cables);
+    const auto region_of_node = [&](Index node) { return groups.is_on_other_rank(node) ? no_index : number(node); };
+    const auto region_of_joint = [&](std::size_t j) { return region_of_node(groups.node_of_joint(j)); };
+    const auto region_of_cable = [&](std::size_t c) { return region_of_node(groups.node_of_cable(c, inverse_mass)); };
+    for (std::size_t j = 0; j < joints; ++j) region_count = std::max(region_count, region_of_joint(j) + 1);
+    for (std::size_t c = 0; c < cables; ++c) region_count = std::max(region_count, region_of_cable(c) + 1);
+    if (joints > 0) collect(joints, region_of_joint, region_count, regions.joints);
+    if (cables > 0) collect(cables, region_of_cable, region_count, regions.cables);
     return region_count;
 }
 
@@ -144,9 +144,9 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
     return all;
 }
 
-Index take_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
-                      RegionTable& regions, std::span<Index> contact_region) {
-    const Index count = label_all_as_one(stencil, inverse_mass, contact_region);
+Index make_single_region(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
+                         RegionTable& regions, std::span<Index> contact_region) {
+    const Index count = label_single_region(stencil, inverse_mass, contact_region);
     const Index all = collect_connections(
         groups, inverse_mass, [](Index) { return 0; }, count, regions);
     collect_contacts(contact_region, all, regions);
@@ -188,7 +188,7 @@ bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std:
                                : separate_in_order(stencil, inverse_mass, groups, memory.sets, regions, contact_region);
             break;
         case ContactRegions::global:
-            region_count = take_all_as_one(stencil, inverse_mass, groups, regions, contact_region);
+            region_count = make_single_region(stencil, inverse_mass, groups, regions, contact_region);
             break;
     }
     resize_results(region_count, regions);

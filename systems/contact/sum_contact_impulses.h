@@ -65,7 +65,7 @@ struct ContactSumInputs {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     std::span<const Index> held;         // rows of nodes that attachments hold
     std::span<const Index> core_nodes;   // BodyTable
-    TouchPlaces touch;
+    TouchPoints touch;
 
     static ContactSumInputs bind(const Binder& binder, const ContactTable& contact, const BodyTable& body,
                                  const NodeTable& node, const AttachmentTable& attachment) {
@@ -83,7 +83,7 @@ struct ContactSumInputs {
                 .inverse_mass = binder.read(node.inverse_mass),
                 .held = binder.read(attachment.node),
                 .core_nodes = binder.read(body.core_nodes),
-                .touch = TouchPlaces::bind(binder, contact)};
+                .touch = TouchPoints::bind(binder, contact)};
     }
 };
 

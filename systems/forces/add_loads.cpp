@@ -22,7 +22,7 @@ struct MeanScales {
         usual = mean_value(keys, during.begin, during.length);
         implicit = mean_value(keys, during.begin_implicit, during.length_implicit);
     }
-    Real of(const LoadInputs& loads, std::size_t body) const {
+    Real at(const LoadInputs& loads, std::size_t body) const {
         return loads.body_implicit[body].size() > 0 ? implicit : usual;
     }
 };
@@ -42,8 +42,9 @@ void add_to_nodes(Executor& executor, const LoadInputs& loads, std::size_t load,
 void add_to_faces(const LoadInputs& loads, std::size_t load, Real scale, std::span<Vec3> force) {
     const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
     loads.for_each_face(load, [&](std::size_t k, const Mat3& corners) {
-        const Vec3 of_node = area_of(corners).norm() / 3 * scale * loads.vector[load];
-        for (std::size_t c = k; c < k + 3; ++c) force[static_cast<std::size_t>(first + loads.share_node[c])] += of_node;
+        const Vec3 node_force = area_of(corners).norm() / 3 * scale * loads.vector[load];
+        for (std::size_t c = k; c < k + 3; ++c)
+            force[static_cast<std::size_t>(first + loads.share_node[c])] += node_force;
     });
 }
 
@@ -85,7 +86,7 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
     for (std::size_t load = 0; load < loads.kind.size(); ++load) {
         const MeanScales scales(loads, load);
         if (loads.load_nodes[load].size() > 0) {
-            const Real scale = scales.of(loads, static_cast<std::size_t>(loads.load_body[load]));
+            const Real scale = scales.at(loads, static_cast<std::size_t>(loads.load_body[load]));
             if (loads.is_on_present_area(load))
                 add_to_faces(loads, load, scale, applied_force);
             else
@@ -94,7 +95,7 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
         }
         any_field = true;
         for (std::size_t body = 0; body < fields.size(); ++body)
-            if (loads.acts_on(load, body)) add_field(loads, load, scales.of(loads, body), fields[body]);
+            if (loads.acts_on(load, body)) add_field(loads, load, scales.at(loads, body), fields[body]);
     }
     if (!any_field) return true;
     parallel_for(executor, applied_force.size(), loaded_nodes_per_block, [&](std::size_t begin, std::size_t end) {

@@ -78,12 +78,13 @@ struct LoadInputs {
     /// Calls visit(first, corners) for each face of a traction on the present area: the row of its first node in
     /// `share_node`, and the present positions of its nodes as columns [m].
     void for_each_face(std::size_t load, auto&& visit) const {
-        const std::span<const Vec3> place = rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
+        const std::span<const Vec3> node_position =
+            rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
         for (auto k = static_cast<std::size_t>(load_nodes[load].begin);
              k < static_cast<std::size_t>(load_nodes[load].end); k += 3) {
             Mat3 corners;
             for (Index c = 0; c < 3; ++c)
-                corners.col(c) = place[static_cast<std::size_t>(share_node[k + static_cast<std::size_t>(c)])];
+                corners.col(c) = node_position[static_cast<std::size_t>(share_node[k + static_cast<std::size_t>(c)])];
             visit(k, corners);
         }
     }

@@ -45,16 +45,16 @@ struct AnchorInputs {
 
     /// True if an anchor is on a collider that moves in this step.
     bool is_led(std::size_t anchor) const {
-        const Index of = collider[anchor];
-        return of != no_index && !motion[static_cast<std::size_t>(of)].stands_still();
+        const Index held_by = collider[anchor];
+        return held_by != no_index && !motion[static_cast<std::size_t>(held_by)].stands_still();
     }
 
     /// Present position of an anchor [m].
     Vec3 at(std::size_t anchor) const {
         if (body[anchor] == no_index) {
             if (collider[anchor] == no_index) return point[anchor].point;
-            const RigidMotion& of = motion[static_cast<std::size_t>(collider[anchor])];
-            return of.position + of.rotation * point[anchor].point;
+            const RigidMotion& pose = motion[static_cast<std::size_t>(collider[anchor])];
+            return pose.position + pose.rotation * point[anchor].point;
         }
         Vec3 sum = Vec3::Zero();
         for_each_node(anchor, [&](std::size_t node, Real weight) { sum += weight * position[node]; });
@@ -65,8 +65,8 @@ struct AnchorInputs {
     Vec3 velocity(std::size_t anchor) const {
         if (body[anchor] == no_index) {
             if (collider[anchor] == no_index) return Vec3::Zero();
-            const RigidMotion& of = motion[static_cast<std::size_t>(collider[anchor])];
-            return of.velocity + of.angular_velocity.cross(of.rotation * point[anchor].point);
+            const RigidMotion& pose = motion[static_cast<std::size_t>(collider[anchor])];
+            return pose.velocity + pose.angular_velocity.cross(pose.rotation * point[anchor].point);
         }
         Vec3 sum = Vec3::Zero();
         for_each_node(anchor, [&](std::size_t node, Real weight) { sum += weight * node_velocity[node]; });

@@ -30,17 +30,17 @@ bool add_drag_couples(const DraggedBodies& bodies, std::span<const BodyField> fi
                                     velocity = rows_of(bodies.velocity, bodies.body_nodes[body]);
         const std::span<const Real> mass = rows_of(bodies.mass, bodies.body_nodes[body]);
         const std::span<Vec3> force = rows_of(applied_force, bodies.body_nodes[body]);
-        Vec3 middle = Vec3::Zero(), of_nodes = Vec3::Zero();
+        Vec3 middle = Vec3::Zero(), node_momentum = Vec3::Zero();
         for (std::size_t n = 0; n < position.size(); ++n) {
             middle += position[n] / static_cast<Real>(position.size());
-            of_nodes += mass[n] * (position[n] - bodies.center[r]).cross(velocity[n]);
+            node_momentum += mass[n] * (position[n] - bodies.center[r]).cross(velocity[n]);
         }
         Mat3 J = Mat3::Zero();
         for (const Vec3& x : position) {
             const Vec3 arm = x - middle;
             J += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
         }
-        const Vec3 turn = solve_where_possible(J, -drag * (bodies.angular_momentum[r] - of_nodes));
+        const Vec3 turn = solve_where_possible(J, -drag * (bodies.angular_momentum[r] - node_momentum));
         for (std::size_t n = 0; n < position.size(); ++n) force[n] += turn.cross(position[n] - middle);
     }
     return true;

@@ -67,7 +67,7 @@ void find_wanted_length(const CableInputs& cables, const CableTimes& times, Real
         rate = mean_value(keys, times.t, times.h);
         block.released = released_at_end(keys, cables.released[c], times);
     }
-    block.wanted = std::max((block.released - length) / times.h, std::min(rate, Real(0)) - times.recovery_speed);
+    block.prescribed = std::max((block.released - length) / times.h, std::min(rate, Real(0)) - times.recovery_speed);
 }
 
 void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& times, CableBlockTable& blocks) {
@@ -75,18 +75,18 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
                      .points = list_points(cables, cable, blocks),
                      .solved = !cables.has_known_forces(cable),
                      .by_length = cables.control[cable] != CableControl::tension,
-                     .wanted = 0,
+                     .prescribed = 0,
                      .released = cables.released[cable],
                      .mobility = blocks.mobilities};
     const std::span<Real> impulse = rows_of(blocks.impulse, block.points);
     const std::size_t segments = impulse.size() - 1;
     if (block.by_length) {
         Real length = 0;
-        for (const Real of_segment : rows_of(blocks.length, block.points)) length += of_segment;
+        for (const Real segment_length : rows_of(blocks.length, block.points)) length += segment_length;
         find_wanted_length(cables, times, length, block);
     } else {
-        block.wanted = times.kick * mean_value(cables.keys_of(cable), times.t, times.h);
-        std::ranges::fill(impulse.first(segments), block.wanted);
+        block.prescribed = times.kick * mean_value(cables.keys_of(cable), times.t, times.h);
+        std::ranges::fill(impulse.first(segments), block.prescribed);
     }
     if (block.solved) {
         const Real scale = cables.step[cable] > 0 ? times.kick / cables.step[cable] : 0;
@@ -98,7 +98,7 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
 
 /// Adds to the bodies at both ends of a segment an upper bound of the squared circular frequencies that its tension
 /// causes [1/s^2]. The segment begins at `point`. `tension`: greatest tension [N].
-void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> of_body) {
+void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> body_rates) {
     const Real length = (cables.anchor.at(point + 1) - cables.anchor.at(point)).norm();
     if (!(length > 0) || tension == 0) return;
     // A segment resists a displacement across its direction with the stiffness tension / length. With the weights w of
@@ -109,12 +109,12 @@ void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension
             end, [&](std::size_t node, Real weight) { mobility += weight * weight * cables.inverse_mass[node]; });
     for (const std::size_t end : {point, point + 1})
         if (const Index body = cables.anchor.body[end]; body != no_index)
-            of_body[static_cast<std::size_t>(body)] += tension / length * mobility;
+            body_rates[static_cast<std::size_t>(body)] += tension / length * mobility;
 }
 
 }  // namespace
 
-void add_cable_rates(const CableInputs& cables, std::span<Real> of_body) {
+void add_cable_rates(const CableInputs& cables, std::span<Real> body_rates) {
     for (std::size_t c = 0; c < cables.size(); ++c) {
         const Range points = cables.points[c];
         const std::span<const TimeKey> keys = cables.keys_of(c);
@@ -123,7 +123,7 @@ void add_cable_rates(const CableInputs& cables, std::span<Real> of_body) {
             const auto at = static_cast<std::size_t>(p);
             const Real last = cables.step[c] > 0 ? cables.tension[at] / cables.step[c] : 0;
             const Real most = known ? std::ranges::max_element(keys, {}, &TimeKey::value)->value : last;
-            add_segment_rate(cables, at, most, of_body);
+            add_segment_rate(cables, at, most, body_rates);
         }
     }
 }
@@ -135,8 +135,9 @@ bool CableInputs::is_led(std::size_t cable) const {
 }
 
 bool CableInputs::is_driven(std::size_t cable, Real t, Real h) const {
-    const std::span<const TimeKey> of = keys_of(cable);
-    return is_led(cable) || changes(of, t, h) || (control[cable] == CableControl::rate && value_at(of, t) != 0);
+    const std::span<const TimeKey> cable_keys = keys_of(cable);
+    return is_led(cable) || changes(cable_keys, t, h) ||
+           (control[cable] == CableControl::rate && value_at(cable_keys, t) != 0);
 }
 
 bool CableInputs::moves(std::size_t cable) const {
@@ -216,9 +217,9 @@ bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const 
         const std::span<Real> tension = rows_of(out.tension, out.points[c]),
                               before = rows_of(out.length, out.points[c]);
         if (out.step[c] > 0) {
-            const CableWork of = work_of_cable(tension.first(tension.size() - 1), before, length);
-            out.work[c] += of.work / out.step[c];
-            out.dissipated[c] += of.dissipated / out.step[c];
+            const CableWork cable_work = work_of_cable(tension.first(tension.size() - 1), before, length);
+            out.work[c] += cable_work.work / out.step[c];
+            out.dissipated[c] += cable_work.dissipated / out.step[c];
         }
         std::ranges::copy(length, before.begin());
         std::ranges::copy(impulse, tension.begin());
@@ -234,14 +235,14 @@ bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const 
 CableMeasures measure_cables(const CableBlockTable& blocks, std::span<const Index> node_body,
                              std::span<const GhostKind> body_ghost) {
     const GhostMarks ghosts{body_ghost};
-    const auto of_ghost = [&](const CableBlock& block) {
+    const auto is_ghost = [&](const CableBlock& block) {
         for (Index p = block.points.begin; p < block.points.end; ++p)
             if (blocks.stencil[p].weight[0] != 0) return ghosts.contain(node_body[blocks.stencil[p].node[0]]);
         return false;
     };
     CableMeasures sum;
     for (std::size_t b = static_cast<std::size_t>(blocks.first_solved); b < blocks.block.size(); ++b) {
-        if (of_ghost(blocks.block[b])) continue;
+        if (is_ghost(blocks.block[b])) continue;
         sum.impulse += blocks.sum_impulse[b];
         sum.work += blocks.work[b];
         sum.dissipated += blocks.dissipated[b];

@@ -74,10 +74,10 @@ bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlo
 /// in `blocks` act [s]. Returns false if there is no such cable.
 bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> applied_force);
 
-/// Adds to `of_body`, by row of BodyTable, an upper bound of the squared circular frequencies that cables cause in the
-/// body [1/s^2]. A prescribed tension counts with its greatest value, any other tension with its value in the last
+/// Adds to `body_rates`, by row of BodyTable, an upper bound of the squared circular frequencies that cables cause in
+/// the body [1/s^2]. A prescribed tension counts with its greatest value, any other tension with its value in the last
 /// step.
-void add_cable_rates(const CableInputs& cables, std::span<Real> of_body);
+void add_cable_rates(const CableInputs& cables, std::span<Real> body_rates);
 
 /// Marks the bodies of driven cables (CableInputs::is_driven). Returns false if no cable is driven. `marked`: by row of
 /// BodyTable.

@@ -94,9 +94,9 @@ struct AnchorVelocities {
 AnchorVelocities velocities_in_step(const AnchorInputs& anchors, std::size_t s, const SpringWorkInputs& step, Real h,
                                     Real lag) {
     if (const Index collider = anchors.collider[s]; collider != no_index) {
-        const RigidMotion& of = anchors.motion[static_cast<std::size_t>(collider)];
-        const Vec3 arm = of.rotation * anchors.point[s].point;
-        const Vec3 mean = of.velocity + (rotation_matrix(h * of.angular_velocity) * arm - arm) / h;
+        const RigidMotion& pose = anchors.motion[static_cast<std::size_t>(collider)];
+        const Vec3 arm = pose.rotation * anchors.point[s].point;
+        const Vec3 mean = pose.velocity + (rotation_matrix(h * pose.angular_velocity) * arm - arm) / h;
         return {mean, mean};
     }
     AnchorVelocities sum{Vec3::Zero(), Vec3::Zero()};
@@ -139,7 +139,7 @@ bool mark_driven_bodies(const SpringInputs& springs, Real t, Real h, std::span<s
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag) {
     SpringWork sum;
     for (std::size_t s = 0; s < springs.size(); ++s) {
-        if (springs.rests(s) || springs.of_ghost(s)) continue;
+        if (springs.rests(s) || springs.is_ghost(s)) continue;
         const SpringForce& now = step.next[s];
         const Vec3 before = springs.first.velocity(s) - springs.second.velocity(s);
         const AnchorVelocities first = velocities_in_step(springs.first, s, step, h, lag),
@@ -155,7 +155,7 @@ SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& 
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag) {
     Real sum = 0;
     for (std::size_t s = 0; s < springs.size(); ++s) {
-        if (springs.of_ghost(s)) continue;
+        if (springs.is_ghost(s)) continue;
         const Stretch stretch(springs, s);
         const Real extension = stretch.length - springs.rest(s, t);
         const SpringLaw law = springs.law(s);

@@ -60,7 +60,7 @@ struct SpringInputs {
 
     std::size_t size() const { return side.size(); }
     /// True if another rank counts the work and energy of the spring.
-    bool of_ghost(std::size_t s) const { return ghosts.contain(first.body[s]) || ghosts.contain(second.body[s]); }
+    bool is_ghost(std::size_t s) const { return ghosts.contain(first.body[s]) || ghosts.contain(second.body[s]); }
     SpringLaw law(std::size_t s) const { return {side[s], stiffness[s], damping[s], strength[s]}; }
     Real rest(std::size_t s, Real t) const { return value_at(rows_of(key, rest_length[s]), t); }
     /// True if every body of the spring is asleep.

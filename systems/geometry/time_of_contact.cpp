@@ -17,17 +17,17 @@ Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
     return nearest.on_first - nearest.on_second;
 }
 
-/// Fraction of `displacement`, counted from the points `x`, up to which a slab of thickness `kept` perpendicular to
-/// `normal` separates the two features. Up to this fraction the distance between the features is at least `kept`, for
-/// any unit vector `normal`.
+/// Fraction of `displacement`, counted from the points `x`, up to which a slab of thickness `threshold` perpendicular
+/// to `normal` separates the two features. Up to this fraction the distance between the features is at least
+/// `threshold`, for any unit vector `normal`.
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
-                  Real kept) {
+                  Real threshold) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;
     Real least = infinity;
     for (std::size_t i = 0; i < own; ++i)
         for (std::size_t j = own; j < 4; ++j) {
             const Real approach = -normal.dot(displacement[i] - displacement[j]);
-            if (approach > 0) least = std::min(least, (normal.dot(x[i] - x[j]) - kept) / approach);
+            if (approach > 0) least = std::min(least, (normal.dot(x[i] - x[j]) - threshold) / approach);
         }
     return least;
 }
@@ -45,22 +45,22 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement) {
 }
 
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
-                                    const KeptApart& kept) {
+                                    const ContactThreshold& threshold) {
     const Real approach = greatest_approach(kind, displacement);
     FourPoints x = position;
     Vec3 offset = offset_between(kind, x);
-    const Real start = offset.norm() - kept.distance;
+    const Real start = offset.norm() - threshold.distance;
     if (!(start > 0)) return Real(0);
     return advance_conservatively(
-        start, std::min(contact_slack * start, kept.near),
+        start, std::min(contact_slack * start, threshold.near),
         [&](Real gap, Real) {
             const Vec3 normal = offset / offset.norm();
-            return std::max(gap / approach, time_of_slab(kind, x, displacement, normal, kept.distance));
+            return std::max(gap / approach, time_of_slab(kind, x, displacement, normal, threshold.distance));
         },
         [&](Real time) {
             for (std::size_t i = 0; i < 4; ++i) x[i] = position[i] + time * displacement[i];
             offset = offset_between(kind, x);
-            return offset.norm() - kept.distance;
+            return offset.norm() - threshold.distance;
         });
 }
 

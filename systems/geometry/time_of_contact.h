@@ -24,7 +24,7 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
 /// Distances at which two features count as in contact. They are needed for features that are the cores (centres or
 /// axes) of round bodies.
-struct KeptApart {
+struct ContactThreshold {
     Real distance = 0;  // sum of the radii of the round bodies [m]
     // The features count as in contact if their gap, the distance beyond `distance`, is at most this value [m].
     Real near = infinity;
@@ -41,6 +41,6 @@ struct KeptApart {
 /// addition, an iteration advances as long as a slab separates the features, so that features that slide past each
 /// other need few iterations. After some thousand iterations the search gives up and returns the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
-                                    const KeptApart& kept = {});
+                                    const ContactThreshold& threshold = {});
 
 }  // namespace skerry

@@ -108,9 +108,10 @@ template <class T, std::size_t N>
 /// Applies extract_rotations to a single register.
 template <class T>
 [[gnu::always_inline]] inline T extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
-    std::array<LaneQuaternion<T>, 1> of_part{q};
-    const std::array<T, 1> trace = extract_rotations(std::array<LaneMat3<T>, 1>{F}, std::array<T, 1>{volume}, of_part);
-    q = of_part[0];
+    std::array<LaneQuaternion<T>, 1> part_rotation{q};
+    const std::array<T, 1> trace =
+        extract_rotations(std::array<LaneMat3<T>, 1>{F}, std::array<T, 1>{volume}, part_rotation);
+    q = part_rotation[0];
     return trace[0];
 }
 

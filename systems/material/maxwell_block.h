@@ -140,8 +140,8 @@ struct MaxwellStep {
         const ViscousModuli moduli = viscous_moduli(material, share);
         // Elements that have only the volumetric part of the stress have the modulus 0 if Poisson's ratio is 0. Their
         // moduli are then 0 instead of 0 / 0.
-        const auto relative = [this](Real of) {
-            return Float8{} + (modulus > 0 ? static_cast<float>(of / modulus) : 0);
+        const auto relative = [this](Real value) {
+            return Float8{} + (modulus > 0 ? static_cast<float>(value / modulus) : 0);
         };
         shear = relative(moduli.mu);
         trace = relative(moduli.lambda / 2);
@@ -163,8 +163,8 @@ struct MaxwellStep {
     // Prefetches are spread over the function, because processors have few buffers for outstanding cache misses.
     const std::size_t entries_ahead = ahead * last.size();
     constexpr std::size_t entries_per_line = 2;
-    const auto prefetch = [&](const SpringStrain& of, std::size_t entry) __attribute__((always_inline)) {
-        if (entry % entries_per_line == 0) prefetch_lines_ahead(&of[entry], entries_ahead, entries_per_line);
+    const auto prefetch = [&](const SpringStrain& column, std::size_t entry) __attribute__((always_inline)) {
+        if (entry % entries_per_line == 0) prefetch_lines_ahead(&column[entry], entries_ahead, entries_per_line);
     };
     // Vector i (of `components_together` components) of the matrix that begins at the given entry.
     const auto load = [&](std::size_t entry, std::size_t i) __attribute__((always_inline)) {

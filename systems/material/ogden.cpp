@@ -59,13 +59,13 @@ struct PrincipalShape {
     };
     Powers powers(Real exponent) const {
         Powers t;
-        const T of_volume = exp_of((-exponent / 3) * log_volume);
+        const T volume_factor = exp_of((-exponent / 3) * log_volume);
         for (std::size_t i = 0; i < 3; ++i) {
             if (exponent == 0) {
                 t.power[i] = T{} + 1.0;
                 t.over_exponent[i] = log_stretch[i] - log_volume * (1.0 / 3);
             } else {
-                t.power[i] = power_of(stretch[i].value, log_stretch[i], exponent) * of_volume;
+                t.power[i] = power_of(stretch[i].value, log_stretch[i], exponent) * volume_factor;
                 t.over_exponent[i] = t.power[i] * (1 / exponent);
             }
         }
@@ -333,12 +333,12 @@ Tangent Ogden::tangent(const MaterialConstants& material, const Mat3& F) {
     Vec3 flip, twist;
     for (Index k = 0; k < 3; ++k) {
         const Index i = (k + 1) % 3, j = (k + 2) % 3;
-        const auto of = static_cast<std::size_t>(k);
-        normal(k, k) += H.diagonal[of];
-        normal(i, j) += H.off[of] + pressure * s[k];
+        const auto axis = static_cast<std::size_t>(k);
+        normal(k, k) += H.diagonal[axis];
+        normal(i, j) += H.off[axis] + pressure * s[k];
         normal(j, i) = normal(i, j);
-        flip[k] = H.flip[of] - pressure * s[k];
-        twist[k] = H.twist[of] + pressure * s[k];
+        flip[k] = H.flip[axis] - pressure * s[k];
+        twist[k] = H.twist[axis] + pressure * s[k];
     }
     return without_softening(frames, normal, flip, twist);
 }

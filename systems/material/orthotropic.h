@@ -55,10 +55,10 @@ struct Orthotropic {
     /// get additional stiffness, up to that of the rest shape, which they regain when they expand.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
-        const Slope<T> of = slope(material, F);
-        for (const LaneMat3<T>& dyad : of.dyads) H.add_dyad(T{} + material.shear_modulus, dyad);
+        const Slope<T> part = slope(material, F);
+        for (const LaneMat3<T>& dyad : part.dyads) H.add_dyad(T{} + material.shear_modulus, dyad);
         H.add_dyad(T{} + material.lame_lambda, F);
-        H.add_identity(of.rest);
+        H.add_identity(part.rest);
     }
 };
 

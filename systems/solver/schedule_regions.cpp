@@ -73,11 +73,11 @@ void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, Reg
     // For each size class, from large to small: index in regions.order at which the next region of the class is
     // written. Class 0: too large for lanes.
     std::array<Index, largest_lane_region + 2> begin{};
-    const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
-    for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];
+    const auto group = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
+    for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(group(r)) + 1];
     const Index large = begin[1];
     for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
-    for (Index r = 0; r < count; ++r) regions.order[begin[static_cast<std::size_t>(place(r))]++] = r;
+    for (Index r = 0; r < count; ++r) regions.order[begin[static_cast<std::size_t>(group(r))]++] = r;
     std::sort(regions.order.begin(), regions.order.begin() + large,
               [&](Index a, Index b) { return cost[a] != cost[b] ? cost[a] > cost[b] : a < b; });
 }

@@ -186,7 +186,7 @@ TEST_CASE("where implicit elements of some bodies change, all clusters are those
     CHECK(std::ranges::equal(quick.first_entry, model.clusters.first_entry));
     CHECK(std::ranges::equal(quick.inverse, model.clusters.inverse));
     CHECK(std::ranges::equal(quick.cluster_of, model.clusters.cluster_of));
-    CHECK(std::ranges::equal(quick.place, model.clusters.place));
+    CHECK(std::ranges::equal(quick.index_in_cluster, model.clusters.index_in_cluster));
     CHECK(quick.inverse.size() != before.inverse.size());
 
     // Bodies that are not reported as changed are skipped: the altered entry of the matrix stays.

@@ -157,7 +157,7 @@ TEST_CASE("the impulse of an axis solves the law of all its forces", "[unit][joi
         if (coin(random)) axis.low = -std::abs(any(random));
         if (coin(random)) axis.high = std::abs(any(random));
         const Real w = 0.1 + std::abs(any(random)), b = 3 * any(random);
-        const Real r = answer_axis(axis, w, b), u = b + w * r;
+        const Real r = solve_axis(axis, w, b), u = b + w * r;
         constexpr Real rounding = 1e-12;
         REQUIRE((u >= axis.low - rounding && u <= axis.high + rounding));
         const AxisImpulses parts = parts_of(axis, w, u, r);

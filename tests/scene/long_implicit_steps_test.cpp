@@ -99,17 +99,18 @@ TEST_CASE("a long step ends as one implicit step with the sum of all impulses do
         StiffBody& stiff = state.model.stiff_bodies[0];
         REQUIRE(stiff.prepare(1, theta * theta * length * length));
         std::vector<Vec3> impulse(count), force(count);
-        for (std::size_t n = 0; n < count; ++n) impulse[static_cast<std::size_t>(stiff.place(n))] = displacement[n];
+        for (std::size_t n = 0; n < count; ++n)
+            impulse[static_cast<std::size_t>(stiff.order_index(n))] = displacement[n];
         stiff.elastic_forces(impulse, force);
         for (std::size_t n = 0; n < count; ++n) {
-            const auto p = static_cast<std::size_t>(stiff.place(n));
+            const auto p = static_cast<std::size_t>(stiff.order_index(n));
             impulse[p] = stiff.mass(p) * velocity[n] + theta * (sum[n] - length * force[p]);
         }
         stiff.respond(impulse);
         Real largest = 1e-9;
         for (const Vec3& of_node : impulse) largest = std::max(largest, of_node.norm());
         for (std::size_t n = 0; n < count; ++n) {
-            const Vec3 during = impulse[static_cast<std::size_t>(stiff.place(n))];
+            const Vec3 during = impulse[static_cast<std::size_t>(stiff.order_index(n))];
             CHECK((table.displacement[n] - displacement[n] - length * during).norm() < 1e-12 * largest * length);
             CHECK((table.velocity[n] - velocity[n] - (during - velocity[n]) / theta).norm() < 1e-11 * largest);
         }
@@ -233,7 +234,7 @@ TEST_CASE("a long step that ends early loses energy, as the whole one does", "[s
     WorldState& state = WorldAccess::state_of(world);
     std::span<Vec3> velocity = state.model.implicit_nodes.velocity;
     for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n].x() = n % 2 == 0 ? 0.02 : -0.02;
-    state.model.stiff_bodies[0].take_rigid_motion(velocity);
+    state.model.stiff_bodies[0].remove_rigid_motion(velocity);
     const auto energy = [&world] {
         const Energy now = world.report().energy;
         return now.kinetic + now.elastic;

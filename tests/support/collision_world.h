@@ -75,10 +75,10 @@ struct CollisionWorld {
         return b;
     }
 
-    Index add_solid(const SolidMesh& mesh, const RigidMotion& place, Real contact_distance,
+    Index add_solid(const SolidMesh& mesh, const RigidMotion& pose, Real contact_distance,
                     const SurfaceProperties& properties = {0.5, 0.4, 0}) {
         std::vector<Vec3> points = mesh.nodes;
-        for (Vec3& x : points) x = place.position + place.rotation * x;
+        for (Vec3& x : points) x = pose.position + pose.rotation * x;
         const Index b = add(points, boundary_triangles(mesh.tetrahedra), contact_distance, BodyKind::deformable);
         body.slot[b] = next_slot++;
         body.material[b] = static_cast<Index>(material.size());

@@ -33,8 +33,8 @@ struct RigidScene {
     RigidInputs inputs() const {
         return {nodes(), position, center, mass, {inverse_inertia, angular_momentum, moment_kick}, momentum, kick};
     }
-    /// Adds a body at rest with nodes first .. first + places - 1 of a scene with `count` nodes.
-    void add(std::size_t count, Index first, std::span<const Vec3> places, const Vec3& at, Real weight,
+    /// Adds a body at rest with nodes first .. first + node_positions.size() - 1 of a scene with `count` nodes.
+    void add(std::size_t count, Index first, std::span<const Vec3> node_positions, const Vec3& at, Real body_mass,
              const Mat3& inertia) {
         if (body_nodes.empty()) {
             body_nodes.push_back({0, 0});
@@ -43,14 +43,14 @@ struct RigidScene {
         node_body.resize(count, 0);
         position.resize(count, Vec3::Zero());
         const auto row = static_cast<Index>(mass.size());
-        for (std::size_t k = 0; k < places.size(); ++k) {
+        for (std::size_t k = 0; k < node_positions.size(); ++k) {
             node_body[static_cast<std::size_t>(first) + k] = static_cast<Index>(body_nodes.size());
-            position[static_cast<std::size_t>(first) + k] = places[k];
+            position[static_cast<std::size_t>(first) + k] = node_positions[k];
         }
-        body_nodes.push_back({first, first + static_cast<Index>(places.size())});
+        body_nodes.push_back({first, first + static_cast<Index>(node_positions.size())});
         body_rigid.push_back({row, row + 1});
         center.push_back(at);
-        mass.push_back(weight);
+        mass.push_back(body_mass);
         inverse_inertia.push_back(inertia.inverse());
         for (std::vector<Vec3>* column : {&momentum, &angular_momentum, &kick, &moment_kick})
             column->push_back(Vec3::Zero());

@@ -29,15 +29,15 @@ struct ElasticBody {
     ElementList list;
     std::vector<Index> element_at;  // index in `list` of the element in each lane; no_index in an unused lane
 
-    ElasticBody(const TetMesh& of, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
+    ElasticBody(const TetMesh& tet_mesh, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)
-        : ElasticBody(of, {material}, std::vector<Index>(of.tetrahedra.size(), 0), rotation, kind) {}
+        : ElasticBody(tet_mesh, {material}, std::vector<Index>(tet_mesh.tetrahedra.size(), 0), rotation, kind) {}
 
     /// Builds a body of several materials; `material_of` gives the material of each tetrahedron.
-    ElasticBody(const TetMesh& of, const std::vector<MaterialConstants>& materials,
+    ElasticBody(const TetMesh& tet_mesh, const std::vector<MaterialConstants>& materials,
                 const std::vector<Index>& material_of, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)
-        : mesh(of) {
+        : mesh(tet_mesh) {
         const std::size_t n = mesh.nodes.size();
         for (const Vec3& x : mesh.nodes) position.push_back(rotation * x);
         velocity.assign(n, Vec3::Zero());

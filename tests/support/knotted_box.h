@@ -26,10 +26,10 @@ inline TetMesh knotted_box(const TetMesh& box, std::vector<std::size_t> at, Real
             mesh.nodes.push_back(middle + scale * (box.nodes[static_cast<std::size_t>(outer[a])] - middle));
         }
         std::vector<std::array<Index, 4>> made{inner};
-        for (std::size_t gone = 0; gone < 4; ++gone) {
+        for (std::size_t removed = 0; removed < 4; ++removed) {
             std::vector<Index> low, high;
             for (std::size_t a = 0; a < 4; ++a)
-                if (a != gone) low.push_back(outer[a]), high.push_back(inner[a]);
+                if (a != removed) low.push_back(outer[a]), high.push_back(inner[a]);
             made.push_back({low[0], low[1], low[2], high[2]});
             made.push_back({low[0], low[1], high[1], high[2]});
             made.push_back({low[0], high[0], high[1], high[2]});

@@ -10,11 +10,11 @@
 
 namespace skerry::test {
 
-/// A box of cells. `place` maps a point of the unit cube to the position of the node.
-template <class Place>
-Mesh mapped_box(const std::array<int, 3>& cells, Place place) {
+/// A box of cells. `map` maps a point of the unit cube to the position of the node.
+template <class Map>
+Mesh mapped_box(const std::array<int, 3>& cells, Map map) {
     Mesh mesh = mesh::box({1, 1, 1}, cells);
-    for (Vec3& x : mesh.nodes) x = place(Vec3(x + Vec3::Constant(0.5)));
+    for (Vec3& x : mesh.nodes) x = map(Vec3(x + Vec3::Constant(0.5)));
     const MeshReport report = inspect(mesh);
     REQUIRE(report.inverted + report.flat == 0);
     return mesh;

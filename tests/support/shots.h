@@ -26,7 +26,7 @@ inline Vec3 random_direction(std::mt19937_64& random) {
     }
 }
 
-struct Named {
+struct NamedMesh {
     std::string name;
     Mesh mesh;
 };
@@ -39,7 +39,7 @@ inline Mesh single_tetrahedron(Real size) {
     return mesh;
 }
 
-inline Named random_shot(std::mt19937_64& random) {
+inline NamedMesh random_shot(std::mt19937_64& random) {
     const Real size = 0.02 + 0.03 * fraction(random);  // size across [m]
     switch (static_cast<int>(5 * fraction(random))) {
         case 0:
@@ -232,23 +232,23 @@ enum class Bullets { meshes, spheres, capsules, cylinders };
 /// projected along the axis, comes closer to the axis than the radius.
 inline bool is_in_cylinder(const std::array<Vec3, 3>& triangle, const Vec3& middle, const Vec3& axis, Real radius,
                            Real half) {
-    constexpr Real most = 1 - 1e-9;
-    std::vector<Vec3> cut(triangle.begin(), triangle.end());
-    for (Vec3& p : cut) p -= middle;
+    constexpr Real shrink = 1 - 1e-9;
+    std::vector<Vec3> polygon(triangle.begin(), triangle.end());
+    for (Vec3& p : polygon) p -= middle;
     for (const Real up : {-1.0, 1.0}) {
-        std::vector<Vec3> kept;
-        for (std::size_t k = 0; k < cut.size(); ++k) {
-            const Vec3 &a = cut[k], &b = cut[(k + 1) % cut.size()];
-            const Real at = most * half - up * axis.dot(a), next = most * half - up * axis.dot(b);
-            if (at > 0) kept.push_back(a);
-            if ((at > 0) != (next > 0)) kept.push_back(a + at / (at - next) * (b - a));
+        std::vector<Vec3> clipped;
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+            const Real at = shrink * half - up * axis.dot(a), next = shrink * half - up * axis.dot(b);
+            if (at > 0) clipped.push_back(a);
+            if ((at > 0) != (next > 0)) clipped.push_back(a + at / (at - next) * (b - a));
         }
-        cut = std::move(kept);
+        polygon = std::move(clipped);
     }
-    for (Vec3& p : cut) p -= axis.dot(p) * axis;
-    for (std::size_t k = 1; k + 1 < cut.size(); ++k)
-        if (closest_point_on_triangle(Vec3::Zero(), cut[0], cut[k], cut[k + 1]).distance_squared <
-            most * most * radius * radius)
+    for (Vec3& p : polygon) p -= axis.dot(p) * axis;
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
+        if (closest_point_on_triangle(Vec3::Zero(), polygon[0], polygon[k], polygon[k + 1]).distance_squared <
+            shrink * shrink * radius * radius)
             return true;
     return false;
 }
@@ -259,9 +259,9 @@ public:
     Shot(std::uint64_t number, bool continuous, Flying flying, Targets targets, Bullets bullets)
         : random_(seed + number), world_(settings(continuous)), flying_(flying), bullets_(bullets) {
         shot_ = bullets == Bullets::meshes     ? random_shot(random_)
-                : bullets == Bullets::spheres  ? Named{"sphere", {}}
-                : bullets == Bullets::capsules ? Named{"capsule", {}}
-                                               : Named{"cylinder", {}};
+                : bullets == Bullets::spheres  ? NamedMesh{"sphere", {}}
+                : bullets == Bullets::capsules ? NamedMesh{"capsule", {}}
+                                               : NamedMesh{"cylinder", {}};
         target_ = random_target(random_, targets);
         if (bullets != Bullets::meshes) radius_ = 0.002 * std::pow(20.0, fraction(random_));
         if (bullets == Bullets::capsules) length_ = radius_ * 0.5 * std::pow(10.0, fraction(random_));
@@ -282,11 +282,11 @@ public:
     Outcome fly() {
         // A shot moves by less than a sixth of its radius between two checks, so that no crossing goes unseen. The time
         // is long enough for the shot to arrive, to be stopped and to leave again.
-        const Real look = 0.15 * radius_ / speed_;
+        const Real interval = 0.15 * radius_ / speed_;
         const Real end = 2 * (start_ + 4 * radius_) / speed_;
-        for (Real t = 0; t < end && outcome_.failure.empty(); t += look) {
+        for (Real t = 0; t < end && outcome_.failure.empty(); t += interval) {
             if (flying_ == Flying::collider) control();
-            const StepReport report = world_.advance(look);
+            const StepReport report = world_.advance(interval);
             if (!report.ok()) outcome_.failure = "refused: " + report.message();
             if (overlaps()) outcome_.failure = "overlaps at " + std::to_string(world_.time()) + " s";
         }
@@ -304,16 +304,17 @@ private:
     }
 
     void build(Real own_modulus, Real other_modulus) {
-        const auto own = world_.add_material(
+        const auto shot_modulus = world_.add_material(
             {.young_modulus = own_modulus, .poisson_ratio = 0.3, .friction = 0.6 * fraction(random_)});
-        const auto other = world_.add_material({.young_modulus = other_modulus, .poisson_ratio = 0.3, .friction = 0.3});
+        const auto target_modulus =
+            world_.add_material({.young_modulus = other_modulus, .poisson_ratio = 0.3, .friction = 0.3});
         if (target_.mesh.nodes.empty()) {
             ColliderSettings placed;
             placed.rotation = rotation_vector(frame_ * target_.turned);
             collider_ = world_.add_collider(target_.shape ? *target_.shape : Shape(target_.surface), placed);
             faces_ = target_.surface.triangles;
         } else {
-            target_body_ = world_.add_body(target_.mesh, {.material = other,
+            target_body_ = world_.add_body(target_.mesh, {.material = target_modulus,
                                                           .rotation = rotation_vector(frame_),
                                                           .dynamics = target_dynamics_,
                                                           .name = "target"});
@@ -323,13 +324,13 @@ private:
         for (const Vec3& x : shot_.mesh.nodes) radius_ = std::max(radius_, x.norm());
         const Real tilt = target_.steepest / 180 * std::acos(-1.0) * fraction(random_),
                    turn = 2 * std::acos(-1.0) * fraction(random_);
-        const Vec3 from(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
+        const Vec3 toward_shot(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
         const Vec3 aim = target_.aim * Vec3(uniform(random_), uniform(random_), 0);
         start_ = (target_.reach + 1.1 * radius_ + length_ / 2) / std::cos(tilt);
-        flight_ = -speed_ * (frame_ * from);
+        flight_ = -speed_ * (frame_ * toward_shot);
         const Vec3 spin = 0.7 * speed_ / radius_ * fraction(random_) * random_direction(random_);
         BodySettings shot{.material = own,
-                          .position = frame_ * (aim + start_ * from),
+                          .position = frame_ * (aim + start_ * toward_shot),
                           .rotation = 3 * fraction(random_) * random_direction(random_),
                           .velocity = flying_ == Flying::shot ? flight_ : Vec3::Zero(),
                           .angular_velocity = spin,
@@ -407,7 +408,7 @@ private:
 
     std::mt19937_64 random_;
     World world_;
-    Named shot_;
+    NamedMesh shot_;
     Target target_;
     Mat3 frame_;
     Flying flying_;

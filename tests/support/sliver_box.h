@@ -20,15 +20,15 @@ inline Mesh mirrored_box(Real size, int cells) {
     const auto node_at = [&](const std::array<int, 3>& p) {
         return static_cast<Index>((p[2] * (cells + 1) + p[1]) * (cells + 1) + p[0]);
     };
-    constexpr std::array<std::array<std::size_t, 3>, 6> walks{
+    constexpr std::array<std::array<std::size_t, 3>, 6> axis_orders{
         {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
     for (int cell = 0; cell < cells * cells * cells; ++cell) {
         const std::array<int, 3> at{cell % cells, cell / cells % cells, cell / (cells * cells)};
-        for (const auto& walk : walks) {
+        for (const auto& order : axis_orders) {
             std::array<int, 3> corner{at[0] + at[0] % 2, at[1] + at[1] % 2, at[2] + at[2] % 2};
             std::array<Index, 4> t{node_at(corner)};
             for (std::size_t i = 0; i < 3; ++i) {
-                corner[walk[i]] += at[walk[i]] % 2 == 0 ? 1 : -1;
+                corner[order[i]] += at[order[i]] % 2 == 0 ? 1 : -1;
                 t[i + 1] = node_at(corner);
             }
             const auto from_first = [&](std::size_t k) -> Vec3 {
@@ -56,11 +56,11 @@ inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uin
         return (node(c[1]) - node(c[0])).cross(node(c[2]) - node(c[0])).dot(node(c[3]) - node(c[0]));
     };
     const Real regular = std::pow(size / cells, 3);  // six volumes of each tetrahedron before any node moves
-    std::vector<bool> taken(mesh.nodes.size(), false);
+    std::vector<bool> used(mesh.nodes.size(), false);
     std::mt19937_64 random(seed);
-    const auto wanted = static_cast<std::size_t>(share * static_cast<Real>(mesh.tetrahedra.size()) + 0.5);
+    const auto target_count = static_cast<std::size_t>(share * static_cast<Real>(mesh.tetrahedra.size()) + 0.5);
     std::size_t made = 0;
-    for (std::size_t tries = 0; tries < 50 * mesh.tetrahedra.size() && made < wanted; ++tries) {
+    for (std::size_t tries = 0; tries < 50 * mesh.tetrahedra.size() && made < target_count; ++tries) {
         const auto& corners = mesh.tetrahedra[random() % mesh.tetrahedra.size()];
         const std::size_t moved = random() % 4;
         const Index n = corners[moved];
@@ -68,7 +68,7 @@ inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uin
         const bool inside = old.cwiseAbs().maxCoeff() < size / 2 * (1 - 1e-9);
         bool free = inside;
         for (std::size_t t : around[static_cast<std::size_t>(n)])
-            for (Index other : mesh.tetrahedra[t]) free = free && !taken[static_cast<std::size_t>(other)];
+            for (Index other : mesh.tetrahedra[t]) free = free && !used[static_cast<std::size_t>(other)];
         if (!free) continue;
         const Vec3 &a = node(corners[(moved + 1) % 4]), &b = node(corners[(moved + 2) % 4]),
                    &c = node(corners[(moved + 3) % 4]);
@@ -85,7 +85,7 @@ inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uin
         }
         made += flat;
         for (std::size_t t : around[static_cast<std::size_t>(n)])
-            for (Index other : mesh.tetrahedra[t]) taken[static_cast<std::size_t>(other)] = true;
+            for (Index other : mesh.tetrahedra[t]) used[static_cast<std::size_t>(other)] = true;
     }
     return mesh;
 }

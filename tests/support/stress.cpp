@@ -10,17 +10,17 @@
 
 namespace skerry::test::stress {
 
-void judge(const Outcome& outcome, const std::source_location& place) {
+void judge(const Outcome& outcome, const std::source_location& location) {
     RecordLine()
         .add("item", outcome.item)
-        .add("what", outcome.what)
+        .add("what", outcome.description)
         .add("criterion", outcome.criterion)
         .add("found", outcome.found)
         .add("held", outcome.held ? 1 : 0)
-        .add("file", std::filesystem::path(place.file_name()).filename().string())
+        .add("file", std::filesystem::path(location.file_name()).filename().string())
         .add("test", Catch::getResultCapture().getCurrentTestName())
         .write();
-    INFO("item " << outcome.item << ", " << outcome.what << ": asked for " << outcome.criterion << ", found "
+    INFO("item " << outcome.item << ", " << outcome.description << ": asked for " << outcome.criterion << ", found "
                  << outcome.found);
     CHECK(outcome.held);
 }
@@ -31,14 +31,14 @@ std::string text(Real value) {
     return digits;
 }
 
-void at_most(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
-             const std::source_location& place) {
-    judge({item, what, quantity + " <= " + text(limit), text(found), found <= limit}, place);
+void at_most(int item, const std::string& description, const std::string& quantity, Real found, Real limit,
+             const std::source_location& location) {
+    judge({item, description, quantity + " <= " + text(limit), text(found), found <= limit}, location);
 }
 
-void at_least(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
-              const std::source_location& place) {
-    judge({item, what, quantity + " >= " + text(limit), text(found), found >= limit}, place);
+void at_least(int item, const std::string& description, const std::string& quantity, Real found, Real limit,
+              const std::source_location& location) {
+    judge({item, description, quantity + " >= " + text(limit), text(found), found >= limit}, location);
 }
 
 Real mechanical_energy(const World& world) {
@@ -56,11 +56,11 @@ bool all_finite(const World& world) {
     return true;
 }
 
-Course follow(World& world, Real seconds, int looks) {
+Course follow(World& world, Real seconds, int samples) {
     Course course;
     const Real start = mechanical_energy(world);
-    for (int look = 0; look < looks && course.ok; ++look) {
-        const StepReport report = world.advance(seconds / looks);
+    for (int sample = 0; sample < samples && course.ok; ++sample) {
+        const StepReport report = world.advance(seconds / samples);
         course.ok = report.ok();
         course.message = report.message();
         course.finite = course.finite && all_finite(world);

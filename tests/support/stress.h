@@ -10,22 +10,22 @@ namespace skerry::test::stress {
 
 /// One row of the table.
 struct Outcome {
-    int item = 0;           // number in the list of docs/stress.md; 0: problems that users report elsewhere
-    std::string what;       // scene and tested quantity
-    std::string criterion;  // condition that must hold
+    int item = 0;             // number in the list of docs/stress.md; 0: problems that users report elsewhere
+    std::string description;  // scene and tested quantity
+    std::string criterion;    // condition that must hold
     std::string found;
     bool held = false;
 };
 
 /// Records the line (tests/support/record.h), then checks that it held.
-void judge(const Outcome& outcome, const std::source_location& place = std::source_location::current());
+void judge(const Outcome& outcome, const std::source_location& location = std::source_location::current());
 
 /// Judges a number that must not exceed its limit and must not be NaN.
-void at_most(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
-             const std::source_location& place = std::source_location::current());
+void at_most(int item, const std::string& description, const std::string& quantity, Real found, Real limit,
+             const std::source_location& location = std::source_location::current());
 /// Judges a number that must not be below its limit and must not be NaN.
-void at_least(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
-              const std::source_location& place = std::source_location::current());
+void at_least(int item, const std::string& description, const std::string& quantity, Real found, Real limit,
+              const std::source_location& location = std::source_location::current());
 
 /// Formats a number with four significant digits.
 std::string text(Real value);
@@ -45,8 +45,8 @@ struct Course {
     Real gain() const { return in_play > 0 ? gained / in_play : 0; }
 };
 
-/// Advances a world and samples it `looks` times; stops at a step that fails.
-Course follow(World& world, Real seconds, int looks);
+/// Advances a world and samples it `samples` times; stops at a step that fails.
+Course follow(World& world, Real seconds, int samples);
 
 /// Sum of kinetic, elastic and potential energy [J].
 Real mechanical_energy(const World& world);

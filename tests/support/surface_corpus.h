@@ -68,11 +68,11 @@ enum class GridEnds { open, joined, reversed };
 /// Triangles of a grid with `across` times `along` cells, with the nodes place(u, v) for u and v from 0 to 1. The ends
 /// of u are joined as `ends` says, and those of v are joined if `tube`.
 inline SurfaceMesh grid_surface(Index across, Index along, GridEnds ends, bool tube,
-                                const std::function<Vec3(Real, Real)>& place) {
+                                const std::function<Vec3(Real, Real)>& position_at) {
     SurfaceMesh surface;
     const Index columns = ends == GridEnds::open ? across + 1 : across, rows = tube ? along : along + 1;
     for (Index i = 0; i < columns; ++i)
-        for (Index j = 0; j < rows; ++j) surface.nodes.push_back(place(Real(i) / across, Real(j) / along));
+        for (Index j = 0; j < rows; ++j) surface.nodes.push_back(position_at(Real(i) / across, Real(j) / along));
     const auto node = [&](Index i, Index j) {
         if (i == columns && ends == GridEnds::reversed) j = along - j;
         return i % columns * rows + j % rows;

@@ -34,17 +34,17 @@ struct TwoHalves {
     std::vector<Index> tied = nodes_at(fine, -half / 2);
 
     explicit TwoHalves(const Settings& settings = without_gravity(), const TieSettings& with = {},
-                       BodyDynamics of_left = BodyDynamics::explicit_elastic,
-                       BodyDynamics of_right = BodyDynamics::explicit_elastic,
+                       BodyDynamics left_dynamics = BodyDynamics::explicit_elastic,
+                       BodyDynamics right_dynamics = BodyDynamics::explicit_elastic,
                        const MaterialSettings& material = rubber, ElementKind element = ElementKind::smoothed)
         : world(settings) {
-        const MaterialHandle of = world.add_material(material);
+        const MaterialHandle handle = world.add_material(material);
         const auto add = [&](const Mesh& mesh, Real x, BodyDynamics dynamics) {
-            return world.add_body(mesh,
-                                  {.material = of, .position = {x, 0, 0}, .dynamics = dynamics, .element = element});
+            return world.add_body(
+                mesh, {.material = handle, .position = {x, 0, 0}, .dynamics = dynamics, .element = element});
         };
-        left = add(coarse, -half / 2, of_left);
-        right = add(fine, half / 2, of_right);
+        left = add(coarse, -half / 2, left_dynamics);
+        right = add(fine, half / 2, right_dynamics);
         TieSettings tie_settings = with;
         tie_settings.body = right;
         tie_settings.nodes = tied;

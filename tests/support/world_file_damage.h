@@ -34,15 +34,15 @@ inline std::vector<ValuesInFile> values_in(std::span<const std::byte> file) {
     return found;
 }
 
-/// Overwrites one number of an array: `place` selects the number, `choice` the new value.
-inline void change_value(const ValuesInFile& values, std::size_t place, unsigned choice, std::span<std::byte> file) {
+/// Overwrites one number of an array: `offset` selects the number, `choice` the new value.
+inline void change_value(const ValuesInFile& values, std::size_t offset, unsigned choice, std::span<std::byte> file) {
     constexpr Real infinite = std::numeric_limits<Real>::infinity();
     constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
     constexpr std::array<Real, 10> reals{0, -1, 1, 1e300, -1e300, 1e-300, 5e-324, none, infinite, 0.5};
     constexpr std::array<std::uint64_t, 10> integers{0,       1, 2, 3, 7, 255, 65535, 0x7fffffff, ~std::uint64_t{0},
                                                      1u << 20};
     const std::size_t count = values.bytes / values.number_bytes;
-    std::byte* const at = file.data() + values.begin + place % count * values.number_bytes;
+    std::byte* const at = file.data() + values.begin + offset % count * values.number_bytes;
     const Real real = reals[choice % reals.size()];
     const auto single = static_cast<float>(real);
     if (values.reals && values.number_bytes == sizeof single)

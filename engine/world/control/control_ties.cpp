@@ -349,9 +349,9 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
         node.node = table.node[k];
         if (table.step[t] > 0) node.force = table.impulse[k] / table.step[t];
         if (table.broken[k] < infinity) node.broken = table.broken[k];
-        const TiePlace place = inputs.place(t, k);
-        const Vec3 apart = (is_ball ? now.point : position(k)) - place.point;
-        node.error = now.kind == TieKind::slide ? std::abs(place.normal.dot(apart)) : apart.norm();
+        const TieTarget target = inputs.target(t, k);
+        const Vec3 apart = (is_ball ? now.point : position(k)) - target.point;
+        node.error = now.kind == TieKind::slide ? std::abs(target.normal.dot(apart)) : apart.norm();
         now.force += node.force;
         now.moment += (position(k) - now.point).cross(node.force);
         if (!node.broken) now.error = std::max(now.error, node.error);

@@ -174,7 +174,7 @@ void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& 
         lower(node, moves.down[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
     for (Index& body : clusters.body) lower(body, moves.down[static_cast<std::size_t>(body)].bodies);
     clusters.cluster_of.erase(moves.gone.nodes);
-    clusters.place.erase(moves.gone.nodes);
+    clusters.index_in_cluster.erase(moves.gone.nodes);
 }
 
 void erase_bodies(const RowMoves& moves, Model& model) {

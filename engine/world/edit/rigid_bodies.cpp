@@ -358,7 +358,7 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
     const Deformation deformation(model, body);
     for (std::size_t n = 0; n < position.size(); ++n)
         deformation.displacement[n] = table.rest_center[r] + to_mesh * (position[n] - fit.center) - rest[n];
-    model.stiff_bodies[r].take_rigid_motion(deformation.displacement);
+    model.stiff_bodies[r].remove_rigid_motion(deformation.displacement);
     note_strain(model, body);
     std::ranges::copy(position, rows_of(model.nodes.position, model.bodies.nodes[body]).begin());
     give_nodes_velocity(model, body);
@@ -375,15 +375,15 @@ void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocit
     const Deformation deformation(model, body);
     const Mat3 from_mesh = frame_of_mesh(table, r);
     const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
-    stiff.stand_in({deformation.displacement, stiff.nodes()});
+    stiff.set_shape({deformation.displacement, stiff.nodes()});
     std::vector<Vec3> by_place(stiff.size());
-    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.place(n)); };
+    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.order_index(n)); };
     for (std::size_t n = 0; n < by_place.size(); ++n)
         by_place[place(n)] = from_mesh.transpose() * (model.nodes.velocity[first + n] - velocity);
     table.angular_momentum[r] = from_mesh * stiff.shape().angular_momentum(by_place);
     const Vec3 turn = from_mesh.transpose() * spin(table, r);
     for (std::size_t k = 0; k < by_place.size(); ++k) by_place[k] -= turn.cross(stiff.shape().position[k]);
-    stiff.take_momenta(by_place);
+    stiff.remove_momenta(by_place);
     for (std::size_t n = 0; n < by_place.size(); ++n) deformation.velocity[n] = by_place[place(n)];
     give_nodes_velocity(model, body);
 }
@@ -427,7 +427,7 @@ void follow_node_velocities(Model& model, std::size_t body) {
         for (std::size_t n = 0; n < deformation.velocity.size(); ++n)
             deformation.velocity[n] = to_mesh * (model.nodes.velocity[first + n] - velocity -
                                                  turn.cross(model.nodes.position[first + n] - table.center[r]));
-        model.stiff_bodies[r].take_rigid_motion(deformation.velocity);
+        model.stiff_bodies[r].remove_rigid_motion(deformation.velocity);
     }
     give_nodes_velocity(model, body);
 }
@@ -462,7 +462,7 @@ std::vector<Vec3> elastic_forces(const Model& model, std::size_t body) {
     const StiffBody& stiff = model.stiff_bodies[r];
     const std::span<const Vec3> displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]);
     std::vector<Vec3> by_place(displacement.size()), force(displacement.size());
-    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.place(n)); };
+    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.order_index(n)); };
     for (std::size_t n = 0; n < displacement.size(); ++n) by_place[place(n)] = displacement[n];
     if (model.rigid_bodies.large[r])
         stiff.elements().forces(by_place, force);

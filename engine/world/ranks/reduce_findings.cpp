@@ -52,7 +52,7 @@ struct NamedBodies {
     bool may_be_far(std::size_t body, Real h) const {
         if (nodes[body].size() == 0) return false;
         const Real distance = position[static_cast<std::size_t>(nodes[body].begin)].cwiseAbs().maxCoeff();
-        const Real farthest = coarsest_place * mean_edge[body] / std::numeric_limits<Real>::epsilon();
+        const Real farthest = coarsest_spacing * mean_edge[body] / std::numeric_limits<Real>::epsilon();
         return mean_edge[body] > 0 && !(2 * (distance + 2 * h * max_speed[body]) < farthest);
     }
 };

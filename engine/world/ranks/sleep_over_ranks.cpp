@@ -85,7 +85,7 @@ void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, R
     for (std::size_t b = 0; sets.any_ready && b < bodies.place.size(); ++b) {
         if (!bodies.is_shared(b)) continue;
         const Index root = sets.touching.root(static_cast<Index>(b));
-        memory.members.push_back({bodies.place[b], root, sets.restless[root]});
+        memory.members.push_back({bodies.place[b], root, sets.stays_awake[root]});
     }
     const std::span<const SetMember> mine = memory.members;
     const std::vector<RankMessage> all = channel.ranks->gather_everywhere(std::as_bytes(mine));
@@ -116,7 +116,7 @@ void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, R
     for (Index n = 0; n < count; ++n)
         if (memory.restless[n]) memory.restless[memory.joined.root(n)] = 1;
     for (const SetMember& member : mine)
-        sets.restless[member.set] |= memory.restless[memory.joined.root(memory.node_of_place[member.place])];
+        sets.stays_awake[member.set] |= memory.restless[memory.joined.root(memory.node_of_place[member.place])];
 }
 
 }  // namespace

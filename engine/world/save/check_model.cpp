@@ -279,7 +279,7 @@ void check_clusters(const SavedFile& file, Model& model) {
     if (count == 0) return;
     expect_all_offsets(file, "clusters/nodes/offset", clusters.nodes.offset, clusters.nodes.item.size());
     clusters.cluster_of.assign(model.nodes.position.size(), no_index);
-    clusters.place.assign(model.nodes.position.size(), no_index);
+    clusters.index_in_cluster.assign(model.nodes.position.size(), no_index);
     std::size_t entries = 0;
     for (std::size_t c = 0; c < count; ++c) {
         const Range nodes = model.bodies.nodes[clusters.body[c]];
@@ -293,7 +293,7 @@ void check_clusters(const SavedFile& file, Model& model) {
                 file.complain("clusters/nodes/item", "node " + std::to_string(n) + " of cluster " + std::to_string(c),
                               "ascending nodes of the cluster's body, each in only one cluster");
             clusters.cluster_of[n] = static_cast<Index>(c);
-            clusters.place[n] = static_cast<Index>(i);
+            clusters.index_in_cluster[n] = static_cast<Index>(i);
         }
         if (of_cluster.empty())
             file.complain("clusters/nodes/offset", "no nodes in cluster " + std::to_string(c), "at least one node");

@@ -226,7 +226,7 @@ void Model::extend_derived() {
     }
     if (!clusters.empty()) {
         clusters.cluster_of.resize(nodes.position.size(), no_index);
-        clusters.place.resize(nodes.position.size(), no_index);
+        clusters.index_in_cluster.resize(nodes.position.size(), no_index);
     }
 }
 
@@ -297,14 +297,14 @@ bool Model::append_outline_again(std::size_t body) {
     if (found == no_index) return false;
     const auto like = static_cast<std::size_t>(found);
     const auto blocks_behind = bodies.tetrahedron_blocks[body].begin - bodies.tetrahedron_blocks[like].begin;
-    RowsBehind behind{bodies.nodes[body].begin - bodies.nodes[like].begin, blocks_behind * element_lanes};
+    RowOffsets offset{bodies.nodes[body].begin - bodies.nodes[like].begin, blocks_behind * element_lanes};
     const SurfaceRanges ranges =
-        append_surface_again({bodies.triangles[like], bodies.edges[like], bodies.vertices[like]}, behind, surface);
+        append_surface_copy({bodies.triangles[like], bodies.edges[like], bodies.vertices[like]}, offset, surface);
     bodies.triangles[body] = ranges.triangles;
     bodies.edges[body] = ranges.edges;
     bodies.vertices[body] = ranges.vertices;
-    const BvhRanges tree = append_bvh_again({bodies.bvh_nodes[like], bodies.bvh_leaves[like]}, behind,
-                                            nodes.rest_position, bvh, bvh_leaves);
+    const BvhRanges tree = append_bvh_copy({bodies.bvh_nodes[like], bodies.bvh_leaves[like]}, offset,
+                                           nodes.rest_position, bvh, bvh_leaves);
     bodies.bvh_nodes[body] = tree.nodes;
     bodies.bvh_leaves[body] = tree.leaves;
     return true;

@@ -74,7 +74,7 @@ struct StepFindings {
     // Impulse and work of holding nodes along single directions: by hold_axes (before contacts), by rows of the contact
     // problem, and by hold_axes_again (after its solution).
     ExternalWork held, held_rows, held_again;
-    TakenByRest rest;
+    SleepLosses rest;
     JointMeasures joints;
     TieMeasures ties;
     SpringWork springs;

@@ -325,7 +325,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
     scratch.parameters.forces_wanted = world.record.forces.on();
     scratch.parameters.moment_point = world.record.forces.moment_point();
-    world.cache.crossings.last_try = attempt.letting_through;
+    world.cache.crossings.last_attempt = attempt.letting_through;
     world.cache.crossings.beyond_lists = false;
     world.cache.crossings.found_count = 0;
     // Largest number of repetitions of an attempt with longer contact lists. Several may be needed, because contacts

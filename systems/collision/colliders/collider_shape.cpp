@@ -35,7 +35,7 @@ Vec3 rim_direction(Index point, const Vec3& normal) {
     return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
 }
 
-/// Distance that a point can move while it stays in the flat region (flat_place) of one side of the shape [m].
+/// Distance that a point can move while it stays in the flat region (flat_region) of one side of the shape [m].
 /// `beside`: distance of the point from the border of the side, measured along the side. `above`: height above the
 /// side. `thickness`: distance of the opposite side. The region is bounded by three kinds of planes: those
 /// perpendicular to the side through its border (distance `beside`), those at 45 degrees through its border, below
@@ -44,7 +44,7 @@ Real within_side(Real beside, Real above, Real thickness) {
     return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
 }
 
-Index flat_place_count(ColliderShape shape) {
+Index flat_region_count(ColliderShape shape) {
     switch (shape) {
         case ColliderShape::plane:
             return 1;
@@ -108,26 +108,26 @@ bool collider_point_follows(ColliderShape shape, Index k) {
     return (shape == ColliderShape::cylinder || shape == ColliderShape::bucket) && k % points_of_rim == 0;
 }
 
-Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& p) {
+Real flat_reach(const ColliderGeometry& geometry, Index region, const Vec3& p) {
     const Vec3& size = geometry.size;
     switch (geometry.shape) {
         case ColliderShape::plane:
             return infinity;
         case ColliderShape::box: {
-            const int axis = static_cast<int>(place) / 2;
-            const Real above = (place % 2 == 0 ? p[axis] : -p[axis]) - size[axis];
+            const int axis = static_cast<int>(region) / 2;
+            const Real above = (region % 2 == 0 ? p[axis] : -p[axis]) - size[axis];
             Real least = infinity;
             for (int i = 0; i < 3; ++i)
                 if (i != axis) least = std::min(least, within_side(size[i] - std::abs(p[i]), above, 2 * size[axis]));
             return least;
         }
         case ColliderShape::cylinder: {
-            const Real above = (place == 0 ? p[2] : -p[2]) - size[1];
+            const Real above = (region == 0 ? p[2] : -p[2]) - size[1];
             return within_side(size[0] - std::sqrt(p[0] * p[0] + p[1] * p[1]), above, 2 * size[1]);
         }
         case ColliderShape::bucket: {
             const Real r = std::sqrt(p[0] * p[0] + p[1] * p[1]), half = size[2] / 2;
-            if (place == 1) return within_side(size[0] + size[2] - r, -size[2] - p[2], size[2]);
+            if (region == 1) return within_side(size[0] + size[2] - r, -size[2] - p[2], size[2]);
             const Real below_rim = size[1] - p[2];
             return std::min(within_side(below_rim, size[0] - r, size[2]), p[2] + half);
         }
@@ -139,23 +139,23 @@ Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& p) {
     return -infinity;
 }
 
-Index flat_place(const ColliderGeometry& geometry, const Vec3& point) {
+Index flat_region(const ColliderGeometry& geometry, const Vec3& point) {
     Index best = no_index;
     Real furthest = -infinity;
-    for (Index place = 0; place < flat_place_count(geometry.shape); ++place) {
-        const Real reach = flat_reach(geometry, place, point);
+    for (Index region = 0; region < flat_region_count(geometry.shape); ++region) {
+        const Real reach = flat_reach(geometry, region, point);
         if (!(reach > furthest)) continue;
         furthest = reach;
-        best = place;
+        best = region;
     }
     return best;
 }
 
 Real flat_reach(const ColliderGeometry& geometry, std::span<const Vec3> points) {
     Real best = -infinity;
-    for (Index place = 0; place < flat_place_count(geometry.shape); ++place) {
+    for (Index region = 0; region < flat_region_count(geometry.shape); ++region) {
         Real least = infinity;
-        for (const Vec3& p : points) least = std::min(least, flat_reach(geometry, place, p));
+        for (const Vec3& p : points) least = std::min(least, flat_reach(geometry, region, p));
         best = std::max(best, least);
     }
     return best;

@@ -34,11 +34,11 @@ bool collider_point_follows(ColliderShape shape, Index k);
 /// function. On a segment or triangle in this volume, the distance is therefore least at an end or corner, so only
 /// nodes can touch. A plane has one region, a box one at each of its six faces, a cylinder one at each end, and a
 /// bucket one inside and one below.
-Index flat_place(const ColliderGeometry& geometry, const Vec3& point);
+Index flat_region(const ColliderGeometry& geometry, const Vec3& point);
 
-/// Distance that a point can move in the frame of the collider while it stays in the flat region `place` [m]. The
+/// Distance that a point can move in the frame of the collider while it stays in the flat region `region` [m]. The
 /// distance is negative if the point is outside of this region.
-Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& point);
+Real flat_reach(const ColliderGeometry& geometry, Index region, const Vec3& point);
 
 /// Distance that all points can move while they stay in the same flat region [m]; negative if no flat region contains
 /// all points.

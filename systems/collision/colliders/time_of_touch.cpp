@@ -17,7 +17,7 @@ namespace {
 using Nodes = std::array<Vec3, 3>;
 
 // Accuracy of the parameter (0 to 1 along an edge) at which the distance is least.
-constexpr Real least_place_tolerance = 1e-12;
+constexpr Real parameter_tolerance = 1e-12;
 
 Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3>& weight) {
     return {distance, weight, on.point, on.normal};
@@ -35,14 +35,14 @@ Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Node
     SurfacePoint last = at(1);
     if (!(first.normal.dot(edge) < 0)) return of_surface(first, first.distance, {1, 0, 0});
     if (!(last.normal.dot(edge) > 0)) return of_surface(last, last.distance, {0, 1, 0});
-    while (high - low > least_place_tolerance) {
+    while (high - low > parameter_tolerance) {
         const Real middle = 0.5 * (low + high);
-        const SurfacePoint there = at(middle);
-        if (there.normal.dot(edge) < 0) {
+        const SurfacePoint at_middle = at(middle);
+        if (at_middle.normal.dot(edge) < 0) {
             low = middle;
         } else {
             high = middle;
-            last = there;
+            last = at_middle;
         }
     }
     return of_surface(last, last.distance, {1 - high, high, 0});
@@ -67,10 +67,10 @@ public:
     /// [m]. It follows from the two intervals that contain the heights and the distances from the axis of all points of
     /// the stretch.
     Real bound(Real low, Real high) const {
-        const Real r_low = from_axis(low), r_high = from_axis(high), r_most = std::max(r_low, r_high),
-                   r_least = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
+        const Real r_low = from_axis(low), r_high = from_axis(high), r_max = std::max(r_low, r_high),
+                   r_min = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
                    z_high = height(high);
-        const Real beside = std::max({inner_ - r_most, r_least - outer_, Real(0)}),
+        const Real beside = std::max({inner_ - r_max, r_min - outer_, Real(0)}),
                    above = std::max({std::min(z_low, z_high) - rim_, bottom_ - std::max(z_low, z_high), Real(0)});
         return std::sqrt(beside * beside + above * above);
     }
@@ -86,13 +86,14 @@ private:
 
 /// Nearest points of an edge and the wall of a bucket, found by branch and bound, because the distance may have several
 /// minima. The returned distance is a lower bound of the least distance. It is at least half of the distance at the
-/// returned point, or a quarter if the search reaches its limit of samples. All distances are reduced by `kept` [m].
-Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
-    constexpr int most_samples = 1024;
+/// returned point, or a quarter if the search reaches its limit of samples. All distances are reduced by `threshold`
+/// [m].
+Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real threshold) {
+    constexpr int max_samples = 1024;
     const Wall wall(geometry, end);
     const auto at = [&](Real s) {
         SurfacePoint on = local_distance(geometry, end[0] + s * (end[1] - end[0]), part);
-        on.distance -= kept;
+        on.distance -= threshold;
         return on;
     };
     struct Interval {
@@ -100,19 +101,19 @@ Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes&
     };
     std::array<Interval, 64> open;
     std::size_t count = 0;
-    Real place = 0, value = at(0).distance, bound = value;
+    Real best = 0, value = at(0).distance, bound = value;
     const auto sample = [&](Real s) {
         const Real distance = at(s).distance;
         if (!(distance < value)) return;
         value = distance;
-        place = s;
+        best = s;
     };
     sample(1);
     open[count++] = {0, 1};
     for (int samples = 0; count > 0 && value > 0; ++samples) {
         const Interval interval = open[--count];
-        const Real least = wall.bound(interval.low, interval.high) - kept;
-        if (least >= value / 2 || samples >= most_samples || count + 2 > open.size()) {
+        const Real least = wall.bound(interval.low, interval.high) - threshold;
+        if (least >= value / 2 || samples >= max_samples || count + 2 > open.size()) {
             bound = std::min(bound, std::max(least, value / 4));
             continue;
         }
@@ -121,14 +122,14 @@ Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes&
         open[count++] = {middle, interval.high};
         open[count++] = {interval.low, middle};
     }
-    return of_surface(at(place), std::min(bound, value), {1 - place, place, 0});
+    return of_surface(at(best), std::min(bound, value), {1 - best, best, 0});
 }
 
-Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
+Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes& end, Real threshold) {
     const bool is_wall = geometry.shape == ColliderShape::bucket && part == 1;
-    if (is_wall) return nearest_on_wall(geometry, part, end, kept);
+    if (is_wall) return nearest_on_wall(geometry, part, end, threshold);
     Touch nearest = nearest_on_convex(geometry, part, end);
-    nearest.distance -= kept;
+    nearest.distance -= threshold;
     return nearest;
 }
 
@@ -159,9 +160,9 @@ Touch nearest_on_face(const ColliderGeometry& geometry, Index k, const Nodes& co
     if (collider_point_follows(geometry.shape, k)) return nearest_on_rim(geometry, k, corner);
     const ColliderPoint point = collider_point(geometry, k, Vec3::Zero());
     const PointTriangle closest = closest_point_on_triangle(point.at, corner[0], corner[1], corner[2]);
-    const Vec3 apart = closest.nearest - point.at;
-    const Real length = apart.norm();
-    const Vec3 normal = length > 0 ? Vec3(apart / length) : Vec3(Vec3::Zero());
+    const Vec3 offset = closest.nearest - point.at;
+    const Real length = offset.norm();
+    const Vec3 normal = length > 0 ? Vec3(offset / length) : Vec3(Vec3::Zero());
     return {length - point.radius, closest.weight, point.at + point.radius * normal, normal};
 }
 
@@ -200,7 +201,7 @@ public:
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinity;
         for (std::size_t i = 0; i < feature_.nodes(); ++i) {
-            const Real above = touch.normal.dot(nodes[i] - touch.point) - feature_.kept.distance,
+            const Real above = touch.normal.dot(nodes[i] - touch.point) - feature_.threshold.distance,
                        approach = greatest_turn(i) * (1 - time) / 2 - normal.dot(velocity(i, time));
             if (approach > 0) least = std::min(least, above / approach);
         }
@@ -236,28 +237,28 @@ private:
 /// nearest, because Touch then has no normal.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
-    return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;
+    return geometry.shape != ColliderShape::bucket || feature.part_or_point == 0;
 }
 
 }  // namespace
 
-bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature) {
-    return geometry.shape == ColliderShape::plane && !(feature.kept.distance > 0);
+bool end_position_suffices(const ColliderGeometry& geometry, const TouchingFeature& feature) {
+    return geometry.shape == ColliderShape::plane && !(feature.threshold.distance > 0);
 }
 
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature,
                     const std::array<Vec3, 3>& nodes) {
     switch (feature.kind) {
         case TouchingFeature::Kind::node: {
-            const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_shape);
-            return of_surface(on, on.distance - feature.kept.distance, {1, 0, 0});
+            const SurfacePoint on = local_distance(geometry, nodes[0], feature.part_or_point);
+            return of_surface(on, on.distance - feature.threshold.distance, {1, 0, 0});
         }
         case TouchingFeature::Kind::edge:
-            return nearest_on_edge(geometry, feature.of_shape, nodes, feature.kept.distance);
+            return nearest_on_edge(geometry, feature.part_or_point, nodes, feature.threshold.distance);
         case TouchingFeature::Kind::face:
             break;
     }
-    return nearest_on_face(geometry, feature.of_shape, nodes);
+    return nearest_on_face(geometry, feature.part_or_point, nodes);
 }
 
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature) {
@@ -272,12 +273,12 @@ std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMo
     Touch touch = nearest_touch(geometry, feature, nodes);
     const Real start = touch.distance;
     if (!(start > 0)) return std::nullopt;
-    if (the_end_tells(geometry, feature)) {
+    if (end_position_suffices(geometry, feature)) {
         touch = nearest_touch(geometry, feature, moving.at(1));
         return touch.distance < 0 ? std::optional(touch) : std::nullopt;
     }
     const std::optional<Real> time = advance_conservatively(
-        start, std::min(contact_slack * start, feature.kept.near),
+        start, std::min(contact_slack * start, feature.threshold.near),
         [&](Real gap, Real now) {
             const Real free = gap / speed;
             return lies_behind(geometry, feature, touch) ? std::max(free, moving.time_before_plane(touch, nodes, now))

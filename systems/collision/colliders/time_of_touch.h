@@ -18,10 +18,10 @@ struct TouchingFeature {
     Kind kind;
     // For a node or edge: number of the collider part (collider_part_count). For a face: number of the collider point
     // (collider_point).
-    Index of_shape;
+    Index part_or_point;
     std::array<Vec3, 3> position;        // world position of each node at the start of the step [m]
     std::array<Vec3, 3> displacement{};  // displacement of each node in the step [m]
-    KeptApart kept{};                    // distance that must remain between the collider and the core of a round body
+    ContactThreshold threshold{};        // distance that must remain between the collider and the core of a round body
 
     std::size_t nodes() const { return static_cast<std::size_t>(kind) + 1; }
 };
@@ -43,14 +43,14 @@ struct Touch {
 /// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider.
 /// For a face and the first point of a rim (collider_point), all points of the rim are considered; if the rim has
 /// passed through the face, the distance of the rim from the edges of the face is returned. Distances of nodes and
-/// edges are signed and reduced by `kept.distance`. The distance from a face is positive on both of its sides.
+/// edges are signed and reduced by `threshold.distance`. The distance from a face is positive on both of its sides.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
 /// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, and the feature
 /// is not the core of a round body. No feature can move around a plane, so a feature that has crossed the plane is
 /// behind it at the end. For a core the end of the step does not suffice, because the distance of the core from the
 /// plane must not fall below the radius at any time of the step.
-bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
+bool end_position_suffices(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
 /// Upper bound of the decrease in distance between the collider and any point of the feature, while both move for h
 /// seconds [m].
@@ -59,11 +59,11 @@ Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature&
 /// Finds the first time in the step at which a feature and a collider are nearly in contact, and returns their nearest
 /// points at this time; no value if they do not meet. The method is conservative advancement, similar to
 /// time_of_contact. `time_of_touch`: receives the time as a fraction of the step, but is left unchanged if
-/// the_end_tells is true; may be null.
+/// end_position_suffices is true; may be null.
 ///
-/// If the_end_tells is true, only the end of the step is tested, and the nearest points are returned if the feature is
-/// behind the plane then. No value is returned for a feature that touches or overlaps the collider at the start of the
-/// step, or for a face whose edges touch first, because edges are tested as separate features.
+/// If end_position_suffices is true, only the end of the step is tested, and the nearest points are returned if the
+/// feature is behind the plane then. No value is returned for a feature that touches or overlaps the collider at the
+/// start of the step, or for a face whose edges touch first, because edges are tested as separate features.
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
                                  const TouchingFeature& feature, Real* time_of_touch = nullptr);
 

@@ -25,10 +25,10 @@ constexpr Real lying_tilt = 0.5;
 // Angle by which a contact normal at an edge or rim may be outside of the range between the normals of the two adjacent
 // sides [rad]. Capsules have an equal tolerance (axis_tilt in point_triangle_contact.cpp).
 constexpr Real rim_angle = 0.03;
-// Tolerance of place_of(), which classifies the gradient of the distance from the cylinder. If the component
+// Tolerance of nearest_region(), which classifies the gradient of the distance from the cylinder. If the component
 // perpendicular to the axis is at most this value, the nearest part is an end; if the component along the axis is at
 // most this value, it is the curved side.
-constexpr Real place_rounding = 1e-9;
+constexpr Real gradient_rounding = 1e-9;
 // Tolerance at the border of a flat side, as a fraction of the size of the side. Points that rounding errors put beside
 // a side thus count as above the side.
 constexpr Real over_fraction = 1e-9;
@@ -37,15 +37,15 @@ constexpr Real level_slope = 1e-9;
 // Number of samples on a rim. Minima are searched between adjacent samples.
 constexpr int samples_around = 16;
 // Accuracy of the angle of a contact point on a rim, and distance below which two minima count as one [rad].
-constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;
+constexpr Real turn_tolerance = 1e-12, same_angle = 1e-6;
 
-// Numbers of the contact points on a shape: of_rim numbers for each rim, of_side numbers for each flat side. Points on
-// the rims of the cylinder come first, from 0. The other constants are the first numbers of points on rims of the other
-// shape, on its flat sides, at its corners, on its edges, and between curved sides.
-constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
-                of_round_sides = 240;
+// Numbers of the contact points on a shape: numbers_per_rim numbers for each rim, numbers_per_side numbers for each
+// flat side. Points on the rims of the cylinder come first, from 0. The other constants are the first numbers of points
+// on rims of the other shape, on its flat sides, at its corners, on its edges, and between curved sides.
+constexpr Index numbers_per_rim = 8, first_on_other_rims = 16, first_on_sides = 40, numbers_per_side = 16,
+                first_at_corners = 136, first_on_edges = 144, first_between_round_sides = 240;
 
-Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
+Vec3 rim_point(Real radius, Real z, const Vec3& direction) {
     return {radius * direction[0], radius * direction[1], z};
 }
 
@@ -73,7 +73,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
     const auto sample = [&](Real turn) {
         Sample at;
         at.direction = {std::cos(turn), std::sin(turn), 0};
-        at.on = distance_at(rim_place(rim.radius, rim.z, at.direction));
+        at.on = distance_at(rim_point(rim.radius, rim.z, at.direction));
         at.slope = at.on.normal.dot(Vec3(-at.direction[1], at.direction[0], 0));
         return at;
     };
@@ -94,12 +94,13 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
                 found = there;
             }
         }
-        const bool again = (last && high - *last < same_place) || (first && high - *first > round - same_place);
+        const bool again = (last && high - *last < same_angle) || (first && high - *first > round - same_angle);
         last = high;
         if (!first) first = high;
         // If the derivative jumps past `slope`, the distance has a kink, which an edge of the other shape causes. The
         // contact points of this edge are found separately, so the kink is not visited.
-        if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
+        if (!again && number < numbers_per_rim && std::abs(found.slope) < rim_angle)
+            visit(number++, found.direction, found.on);
     };
     Sample before = sample(0);
     for (int i = 1; i <= samples_around; ++i) {
@@ -109,14 +110,14 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         // If the derivative is zero at a sample, the sample lies on an arc of constant distance or, by chance, at a
         // minimum. The derivative at a point a little beyond the sample decides between the two.
         if (falls && after.slope >= -level_slope) {
-            const Sample beyond = rises ? after : sample(high + same_place);
+            const Sample beyond = rises ? after : sample(high + same_angle);
             if (beyond.slope > level_slope)
-                find(low, rises ? high : high + same_place, 0, beyond);
+                find(low, rises ? high : high + same_angle, 0, beyond);
             else
                 find(low, high, -level_slope, after);
         } else if (!falls && before.slope <= level_slope && rises) {
-            const bool stretch = sample(low - same_place).slope >= -level_slope;
-            find(stretch ? low : low - same_place, high, stretch ? level_slope : 0, after);
+            const bool stretch = sample(low - same_angle).slope >= -level_slope;
+            find(stretch ? low : low - same_angle, high, stretch ? level_slope : 0, after);
         }
         before = after;
     }
@@ -148,9 +149,9 @@ struct FlatSide {
 /// Finds the contact points of the cylinder on one part of another shape.
 class ShapeTouches {
 public:
-    ShapeTouches(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
+    ShapeTouches(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& pose,
                  Real near, CylinderTouches& found)
-        : own_(cylinder), other_(other), part_(part), place_(place), near_(near), found_(found) {}
+        : own_(cylinder), other_(other), part_(part), pose_(pose), near_(near), found_(found) {}
 
     void run() {
         switch (other_.shape) {
@@ -158,11 +159,11 @@ public:
                 touch_side(0, {Vec3::UnitZ(), Vec3::Zero(), FlatSide::Region::all, {}});
                 return;
             case ColliderShape::sphere:
-                touch_ball(own_, place_.position, other_.size[0], near_, found_);
+                touch_ball(own_, pose_.position, other_.size[0], near_, found_);
                 return;
             case ColliderShape::capsule: {
-                const Vec3 half = other_.size[1] * place_.rotation.col(2);
-                touch_capsule(own_, place_.position - half, place_.position + half, other_.size[0], near_, found_);
+                const Vec3 half = other_.size[1] * pose_.rotation.col(2);
+                touch_capsule(own_, pose_.position - half, pose_.position + half, other_.size[0], near_, found_);
                 return;
             }
             case ColliderShape::box:
@@ -201,11 +202,11 @@ private:
         return {normal, normal.cwiseProduct(other_.size), FlatSide::Region::rectangle, other_.size};
     }
 
-    Vec3 to_other(const Vec3& p) const { return to_local(place_, p); }
-    Vec3 from_other(const Vec3& p) const { return to_world(place_, p); }
+    Vec3 to_other(const Vec3& p) const { return to_local(pose_, p); }
+    Vec3 from_other(const Vec3& p) const { return to_world(pose_, p); }
     SurfacePoint other_at(const Vec3& p) const {
         SurfacePoint on = local_distance(other_, to_other(p), part_);
-        on.normal = place_.rotation * on.normal;
+        on.normal = pose_.rotation * on.normal;
         on.point = from_other(on.point);
         return on;
     }
@@ -226,7 +227,8 @@ private:
             for_each_minimum(
                 rim, [&](const Vec3& p) { return other_at(p); },
                 [&](Index k, const Vec3& direction, const SurfacePoint& on) {
-                    if (rim.faces(-on.normal, direction)) add(of_rim * end + k, on.distance, on.normal, on.point);
+                    if (rim.faces(-on.normal, direction))
+                        add(numbers_per_rim * end + k, on.distance, on.normal, on.point);
                 });
         }
     }
@@ -237,13 +239,13 @@ private:
             rim,
             [&](const Vec3& p) {
                 SurfacePoint on = local_distance(own_, from_other(p), 0);
-                on.normal = place_.rotation.transpose() * on.normal;
+                on.normal = pose_.rotation.transpose() * on.normal;
                 return on;
             },
             [&](Index k, const Vec3& direction, const SurfacePoint& on) {
                 if (!rim.faces(-on.normal, direction)) return;
-                add(of_other_rims + of_rim * rim_number + k, on.distance, -(place_.rotation * on.normal),
-                    from_other(rim_place(rim.radius, rim.z, direction)));
+                add(first_on_other_rims + numbers_per_rim * rim_number + k, on.distance, -(pose_.rotation * on.normal),
+                    from_other(rim_point(rim.radius, rim.z, direction)));
             });
     }
 
@@ -251,33 +253,33 @@ private:
     /// disc, adds also the points at which the rim of the cylinder next to the side crosses the outer border of the
     /// disc in the projection along the normal.
     void touch_side(Index number, const FlatSide& side) {
-        const Vec3 normal = place_.rotation * side.normal;
+        const Vec3 normal = pose_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
         const bool stands = normal.head<2>().norm() <= lying_tilt;
-        const auto over = [&](Index k, const Vec3& p) {
+        const auto add_if_above = [&](Index k, const Vec3& p) {
             const Real height = normal.dot(p - at);
             const Vec3 foot = p - height * normal;
             if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
-                add(of_sides + of_side * number + k, height, normal, foot);
+                add(first_on_sides + numbers_per_side * number + k, height, normal, foot);
         };
         // If the ends of the cylinder are tilted against the side by more than 30 degrees (lying_tilt), touch_rims()
         // already finds the only possible contact point of each rim, the one that reaches furthest.
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
         for (const RimPoints::Point& p : RimPoints(own_, normal)) {
-            const Index end = p.number / RimPoints::most_of_rim, k = p.number % RimPoints::most_of_rim;
+            const Index end = p.number / RimPoints::max_per_rim, k = p.number % RimPoints::max_per_rim;
             if (all)
                 add(p.number, normal.dot(p.at - at), normal, p.at - normal.dot(p.at - at) * normal);
             else if ((end == 0) == (normal[2] < 0))
-                over(k, p.at);
+                add_if_above(k, p.at);
         }
         if (side.region != FlatSide::Region::disc) return;
         const CylinderRim rim = rim_of(own_, normal[2] < 0 ? 0 : 1);
-        Index k = RimPoints::most_of_rim;
+        Index k = RimPoints::max_per_rim;
         for_each_passing(
             rim, [&](const Vec3& p) { return to_other(p).head<2>().norm() - side.outer; },
             [&](const Vec3& p) {
-                if (k < of_side) over(k++, p);
+                if (k < numbers_per_side) add_if_above(k++, p);
             });
     }
 
@@ -286,22 +288,22 @@ private:
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
         // Normal of the end in the frame of the other cylinder.
-        const Vec3 normal = place_.rotation.transpose() * side.normal;
+        const Vec3 normal = pose_.rotation.transpose() * side.normal;
         if (normal.head<2>().norm() > lying_tilt) return;
-        const auto over = [&](Index k, const Vec3& p) {
+        const auto add_if_above = [&](Index k, const Vec3& p) {
             const Vec3 here = from_other(p);
             const Real height = side.normal.dot(here - side.at);
             if (side.holds(here) && is_before(side, height, own_, 0, here))
-                add(of_sides + of_side * number + k, height, -side.normal, here);
+                add(first_on_sides + numbers_per_side * number + k, height, -side.normal, here);
         };
         for (const RimPoints::Point& p : RimPoints(other_, normal))
-            if ((p.number / RimPoints::most_of_rim == 0) == (normal[2] < 0))
-                over(p.number % RimPoints::most_of_rim, p.at);
+            if ((p.number / RimPoints::max_per_rim == 0) == (normal[2] < 0))
+                add_if_above(p.number % RimPoints::max_per_rim, p.at);
     }
 
     template <class Value, class Visit>
     void for_each_passing(const CylinderRim& rim, Value&& value_at, Visit&& visit) const {
-        const auto at = [&](Real turn) { return rim_place(rim.radius, rim.z, {std::cos(turn), std::sin(turn), 0}); };
+        const auto at = [&](Real turn) { return rim_point(rim.radius, rim.z, {std::cos(turn), std::sin(turn), 0}); };
         constexpr Real between = 2 * std::numbers::pi / samples_around;
         Real before = value_at(at(0));
         for (int i = 1; i <= samples_around; ++i) {
@@ -324,9 +326,10 @@ private:
             const Vec3 at = from_other(sign.cwiseProduct(other_.size));
             const SurfacePoint on = local_distance(own_, at, 0);
             if (!(on.distance <= near_)) continue;
-            const Vec3 normal = place_.rotation.transpose() * -on.normal;
+            const Vec3 normal = pose_.rotation.transpose() * -on.normal;
             const bool faces = (normal.cwiseProduct(sign).array() >= -over_fraction).all();
-            if (faces || place_of(on.normal) == CylinderPlace::end) add(of_corners + k, on.distance, -on.normal, at);
+            if (faces || nearest_region(on.normal) == CylinderRegion::end)
+                add(first_at_corners + k, on.distance, -on.normal, at);
         }
     }
 
@@ -343,9 +346,9 @@ private:
                 const EdgeContact contact = edge_contact(own_, 0, a, b);
                 for (std::size_t i = 0; i < contact.count; ++i) {
                     const EdgePoint& touch = contact.point[i];
-                    const Vec3 normal = place_.rotation.transpose() * -touch.on.normal;
+                    const Vec3 normal = pose_.rotation.transpose() * -touch.on.normal;
                     if ((normal.cwiseProduct(out).array() >= -rim_angle).all())
-                        add(of_edges + 8 * edge + touch.number, touch.on.distance, -touch.on.normal,
+                        add(first_on_edges + 8 * edge + touch.number, touch.on.distance, -touch.on.normal,
                             a + touch.s * (b - a));
                 }
             }
@@ -363,7 +366,7 @@ private:
         const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
         // Inside the bucket the cylinder cannot touch the outer side. `length` is then below `radius`.
         if (other_.shape == ColliderShape::bucket && length < radius) return;
-        add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
+        add(first_between_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
     }
 
     void touch_bucket() {
@@ -383,7 +386,7 @@ private:
 
     const ColliderGeometry &own_, &other_;
     const Index part_;
-    const RigidMotion& place_;
+    const RigidMotion& pose_;
     const Real near_;
     CylinderTouches& found_;
 };
@@ -395,8 +398,8 @@ RimPoints::RimPoints(const ColliderGeometry& cylinder, const Vec3& normal) {
     const Vec3 deepest = tilt > 0 ? Vec3(-normal[0] / tilt, -normal[1] / tilt, 0) : Vec3(Vec3::UnitX());
     for (Index end = 0; end < 2; ++end) {
         const auto put = [&](Index k, const Vec3& direction) {
-            point[count++] = {most_of_rim * end + k,
-                              rim_place(cylinder.size[0], end == 0 ? cylinder.size[1] : -cylinder.size[1], direction)};
+            point[count++] = {max_per_rim * end + k,
+                              rim_point(cylinder.size[0], end == 0 ? cylinder.size[1] : -cylinder.size[1], direction)};
         };
         put(0, deepest);
         if (tilt > lying_tilt) continue;
@@ -411,9 +414,9 @@ RimPoints::RimPoints(const ColliderGeometry& cylinder, const Vec3& normal) {
     }
 }
 
-CylinderPlace place_of(const Vec3& gradient) {
-    if (gradient.head<2>().norm() <= place_rounding) return CylinderPlace::end;
-    return std::abs(gradient[2]) <= place_rounding ? CylinderPlace::side : CylinderPlace::rim;
+CylinderRegion nearest_region(const Vec3& gradient) {
+    if (gradient.head<2>().norm() <= gradient_rounding) return CylinderRegion::end;
+    return std::abs(gradient[2]) <= gradient_rounding ? CylinderRegion::side : CylinderRegion::rim;
 }
 
 void touch_ball(const ColliderGeometry& cylinder, const Vec3& middle, Real radius, Real near, CylinderTouches& found) {
@@ -435,9 +438,9 @@ void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& 
         add(2 + contact.point[i].number, contact.point[i].s, contact.point[i].on);
 }
 
-void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
+void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& pose,
                  Real near, CylinderTouches& found) {
-    ShapeTouches(cylinder, other, part, place, near, found).run();
+    ShapeTouches(cylinder, other, part, pose, near, found).run();
 }
 
 }  // namespace skerry

@@ -23,18 +23,18 @@ struct CylinderTouch {
 /// possible number of contact points.
 class CylinderTouches {
 public:
-    static constexpr Index most = 256;  // capacity of the list; every CylinderTouch::number is below it
+    static constexpr Index capacity = 256;  // capacity of the list; every CylinderTouch::number is below it
 
     void clear() { count_ = 0; }
     void add(const CylinderTouch& touch) {
-        SKERRY_CHECK(count_ < static_cast<std::size_t>(most));
+        SKERRY_CHECK(count_ < static_cast<std::size_t>(capacity));
         touch_[count_++] = touch;
     }
     const CylinderTouch* begin() const { return touch_.data(); }
     const CylinderTouch* end() const { return touch_.data() + count_; }
 
 private:
-    std::array<CylinderTouch, most> touch_;
+    std::array<CylinderTouch, capacity> touch_;
     std::size_t count_ = 0;
 };
 
@@ -50,12 +50,12 @@ private:
 /// nearest of them is at the start. Points at other angles could come nearer on such a path, and would cause false
 /// contacts.
 struct RimPoints {
-    static constexpr Index most_of_rim = 9;
+    static constexpr Index max_per_rim = 9;
     struct Point {
-        Index number;  // number of the point, below 2 * most_of_rim
+        Index number;  // number of the point, below 2 * max_per_rim
         Vec3 at;       // [m]
     };
-    std::array<Point, 2 * most_of_rim> point;
+    std::array<Point, 2 * max_per_rim> point;
     std::size_t count = 0;
 
     RimPoints(const ColliderGeometry& cylinder, const Vec3& normal);
@@ -63,10 +63,10 @@ struct RimPoints {
     const Point* end() const { return point.data() + count; }
 };
 
-/// Part of the cylinder surface nearest to a point. place_of determines the part from the gradient of the distance from
-/// the cylinder at this point.
-enum class CylinderPlace : std::uint8_t { end, side, rim };
-CylinderPlace place_of(const Vec3& gradient);
+/// Part of the cylinder surface nearest to a point. nearest_region determines the part from the gradient of the
+/// distance from the cylinder at this point.
+enum class CylinderRegion : std::uint8_t { end, side, rim };
+CylinderRegion nearest_region(const Vec3& gradient);
 
 /// Adds the contact point with a sphere if its distance is at most `near` [m]. `middle` and `radius`: centre and radius
 /// of the sphere [m].
@@ -78,8 +78,8 @@ void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& 
                    CylinderTouches& found);
 
 /// Adds the contact points with a part of another shape whose distance is at most `near` [m]. The other shape must not
-/// be a mesh. `place`: pose of the other shape in the frame of the cylinder.
-void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
+/// be a mesh. `pose`: pose of the other shape in the frame of the cylinder.
+void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& pose,
                  Real near, CylinderTouches& found);
 
 /// Lower bound of the distance between the cylinder and a triangle [m]. `face`: the triangle in the frame of the
@@ -89,9 +89,9 @@ Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 /// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]. It is the
 /// greatest of several bounds: the distance of the other shape from the bounding sphere of the cylinder; for two
 /// cylinders, the distance between the capsules around them; the distances between parallel support planes of the two
-/// shapes. The normals of these planes are the axes of both shapes and the normals of `touches`. `place`: pose of the
+/// shapes. The normals of these planes are the axes of both shapes and the normals of `touches`. `pose`: pose of the
 /// other shape in the frame of the cylinder.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
-                          const RigidMotion& place, const CylinderTouches& touches);
+                          const RigidMotion& pose, const CylinderTouches& touches);
 
 }  // namespace skerry

@@ -36,12 +36,13 @@ RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body) {
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body) {
     RigidCylinder found = placed(inputs, body);
     const Index first = found.middle;
-    const Vec3 way = motion.of(first), up = found.motion.rotation.col(2);
+    const Vec3 displacement = motion.displacement(first), up = found.motion.rotation.col(2);
     const Vec3 up_then =
-        (inputs.position[first + 1] + motion.of(first + 1) - (inputs.position[first] + way)).normalized();
+        (inputs.position[first + 1] + motion.displacement(first + 1) - (inputs.position[first] + displacement))
+            .normalized();
     const Vec3 axis = up.cross(up_then);
     const Real sine = axis.norm();
-    found.motion.velocity = way / motion.h;
+    found.motion.velocity = displacement / motion.h;
     // `sine` is also zero if the axis has rotated by 180 degrees. The cylinder then occupies the same space as before,
     // so zero angular velocity is right, too.
     if (sine > 0) found.motion.angular_velocity = std::atan2(sine, up.dot(up_then)) / (sine * motion.h) * axis;

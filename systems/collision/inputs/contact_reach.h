@@ -90,8 +90,9 @@ inline Real face_zone(const PairScale& scale) {
 /// of their radii. The bodies count as in contact if the gap between their surfaces is below contact_slack times the
 /// shell distance. If the shell distance is zero, surfaces in contact may overlap by rounding errors. Then no distance
 /// is kept, so only crossings of the cores are found.
-inline KeptApart kept_of_radii(const PairScale& scale) {
-    return scale.radii > 0 && scale.shell > 0 ? KeptApart{scale.radii, contact_slack * scale.shell} : KeptApart{};
+inline ContactThreshold threshold_of_radii(const PairScale& scale) {
+    return scale.radii > 0 && scale.shell > 0 ? ContactThreshold{scale.radii, contact_slack * scale.shell}
+                                              : ContactThreshold{};
 }
 
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second);

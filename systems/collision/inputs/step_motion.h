@@ -12,7 +12,7 @@ struct StepMotion {
     std::span<const Vec3> velocity_next, push_out;
     Real h;  // length of the step [s]
 
-    Vec3 of(Index node) const { return h * (velocity_next[node] + push_out[node]); }
+    Vec3 displacement(Index node) const { return h * (velocity_next[node] + push_out[node]); }
 };
 
 }  // namespace skerry

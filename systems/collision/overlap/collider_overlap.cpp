@@ -24,16 +24,16 @@ Vec3 inner_point(const ColliderGeometry& geometry) {
 /// Vector from a point to the nearest point on the surface of a solid [m].
 Vec3 to_surface(const Solid& solid, const Vec3& point) {
     Real least = infinity;
-    Vec3 way = Vec3::Zero();
+    Vec3 offset = Vec3::Zero();
     for (const SolidTriangle& t : solid.surface) {
         const auto at = [&](std::size_t k) -> const Vec3& { return solid.point[static_cast<std::size_t>(t.node[k])]; };
         const PointTriangle found = closest_point_on_triangle(point, at(0), at(1), at(2));
         if (found.distance_squared < least) {
             least = found.distance_squared;
-            way = found.nearest - point;
+            offset = found.nearest - point;
         }
     }
-    return way;
+    return offset;
 }
 
 /// A body and an analytic collider.
@@ -123,12 +123,12 @@ private:
         const Vec3 at = pair_.world(point.at) - body.shift;
         const bool within = contains(body.solid, at, 0);
         if (!within && point.radius == 0) return;
-        const Vec3 way = to_surface(body.solid, at);
-        const Real length = way.norm(), depth = (within ? length : -length) + point.radius;
+        const Vec3 offset = to_surface(body.solid, at);
+        const Real length = offset.norm(), depth = (within ? length : -length) + point.radius;
         if (!(depth > overlap_.depth && length > 0)) return;
         found_ = true;
         overlap_.depth = depth;
-        overlap_.direction = (within ? -way : way) / length;
+        overlap_.direction = (within ? -offset : offset) / length;
         overlap_.place = at + body.shift;
     }
     /// Tests the first point of a rim, number `k`, against each face of the body: the rim point furthest behind the
@@ -157,12 +157,12 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
                                             const PlacedSolid& body, Real tolerance) {
     const Vec3 point = to_world(motion, inner_point(geometry));
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
-    Vec3 way = to_surface(body.solid, point - body.shift);
-    const Real length = way.norm();
+    Vec3 offset = to_surface(body.solid, point - body.shift);
+    const Real length = offset.norm();
     // The body moves until its surface point nearest to `point` is beyond the far side of the collider. The direction
     // is from that surface point to `point`.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
-                   length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
+                   length > 0 ? Vec3(-offset / length) : Vec3(Vec3::UnitZ()), point};
 }
 
 std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
@@ -171,9 +171,9 @@ std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGe
     Touch nearest{.distance = infinity, .weight = {}, .point = {}, .normal = {}};
     for (Index part = 0; part < collider_part_count(geometry.shape); ++part) {
         TouchingFeature feature{.kind = body.is_segment ? TouchingFeature::Kind::edge : TouchingFeature::Kind::node,
-                                .of_shape = part,
+                                .part_or_point = part,
                                 .position = core};
-        feature.kept.distance = body.radius;
+        feature.threshold.distance = body.radius;
         const Touch touch = nearest_touch(geometry, feature, core);
         if (touch.distance < nearest.distance) nearest = touch;
     }

@@ -77,7 +77,7 @@ bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, cons
     return false;
 }
 
-Real SimplexOverlap::way_out(const Vec3& direction) const {
+Real SimplexOverlap::exit_distance(const Vec3& direction) const {
     Real least = infinity;
     for (std::size_t k = 0; k < count_; ++k) {
         const Real along = axis_[k].dot(direction);

@@ -28,7 +28,7 @@ public:
     bool overlapping() const { return overlapping_; }
     /// Distance by which the first simplex has to move along a unit direction to be separated from the second simplex
     /// [m]. Valid only if the simplices overlap.
-    Real way_out(const Vec3& direction) const;
+    Real exit_distance(const Vec3& direction) const;
 
 private:
     bool separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance);

@@ -14,7 +14,7 @@ namespace {
 bool is_closed(std::span<const SolidTriangle> surface) {
     struct Side {
         std::array<Index, 2> node;  // ascending
-        int way;
+        int direction;
     };
     std::vector<Side> sides;
     sides.reserve(3 * surface.size());
@@ -26,7 +26,7 @@ bool is_closed(std::span<const SolidTriangle> surface) {
     std::ranges::sort(sides, {}, &Side::node);
     int sum = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        sum += sides[i].way;
+        sum += sides[i].direction;
         if (i + 1 < sides.size() && sides[i + 1].node == sides[i].node) continue;
         if (sum != 0) return false;
     }
@@ -80,14 +80,14 @@ int passage(const Solid& solid, const std::array<Index, 4>& triangle, const Vec3
 }
 
 bool surface_contains(const Solid& solid, const Vec3& point) {
-    int turns = 0;
+    int winding = 0;
     const auto above = [&](const Aabb& box) {
         return box.lower.x() <= point.x() && point.x() <= box.upper.x() && box.lower.y() <= point.y() &&
                point.y() <= box.upper.y() && point.z() <= box.upper.z();
     };
     solid.tree.for_each(above,
-                        [&](Index s) { turns += passage(solid, solid.simplex[static_cast<std::size_t>(s)], point); });
-    return turns > 0;
+                        [&](Index s) { winding += passage(solid, solid.simplex[static_cast<std::size_t>(s)], point); });
+    return winding > 0;
 }
 
 bool tetrahedron_contains(const Simplex& t, const Vec3& point, Real tolerance) {

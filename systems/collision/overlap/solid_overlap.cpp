@@ -12,9 +12,9 @@ namespace skerry {
 namespace {
 
 /// Two simplices that overlap, and the position of the overlap.
-struct Meeting {
+struct SimplexPair {
     Index first, second;
-    Vec3 place;  // centre of the intersection of the two bounding boxes [m]
+    Vec3 center;  // centre of the intersection of the two bounding boxes [m]
 };
 
 Aabb box_of(const Simplex& s) {
@@ -31,17 +31,17 @@ Vec3 middle(const Aabb& box) {
     return (box.lower + box.upper) / 2;
 }
 
-/// Calls `meet` for each pair of overlapping simplices of two solids. The arguments are the indices of both simplices,
+/// Calls `visit` for each pair of overlapping simplices of two solids. The arguments are the indices of both simplices,
 /// the two simplices in the frame of the second solid, and their SimplexOverlap.
-template <class Meet>
-void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Meet&& meet) {
+template <class Visit>
+void for_each_overlapping_pair(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Visit&& visit) {
     // shift of the first solid relative to the second solid
     const Vec3 shift = first.shift - second.shift;
     // The boxes are enlarged, because the box of a triangle in an axis-aligned plane has no volume and would overlap
     // nothing (boxes_overlap).
     const Vec3 skin = Vec3::Constant(tolerance);
-    const Aabb of_second{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
-    first.solid.tree.for_each_overlap(of_second, [&](Index f) {
+    const Aabb second_box{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
+    first.solid.tree.for_each_overlap(second_box, [&](Index f) {
         const Simplex own = first.solid.at(f).moved(shift);
         Aabb box = box_of(own);
         box.lower -= skin;
@@ -49,31 +49,31 @@ void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real 
         second.solid.tree.for_each_overlap(box, [&](Index s) {
             const Simplex other = second.solid.at(s);
             if (const SimplexOverlap overlap(own, other, tolerance); overlap.overlapping())
-                meet(f, s, own, other, overlap);
+                visit(f, s, own, other, overlap);
         });
     });
 }
 
-std::vector<Meeting> find_meetings(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
-    std::vector<Meeting> found;
-    for_each_meeting(first, second, tolerance,
-                     [&](Index f, Index s, const Simplex& own, const Simplex& other, const SimplexOverlap&) {
-                         found.push_back({f, s, middle(shared(box_of(own), box_of(other))) + second.shift});
-                     });
+std::vector<SimplexPair> find_overlapping_pairs(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
+    std::vector<SimplexPair> found;
+    for_each_overlapping_pair(first, second, tolerance,
+                              [&](Index f, Index s, const Simplex& own, const Simplex& other, const SimplexOverlap&) {
+                                  found.push_back({f, s, middle(shared(box_of(own), box_of(other))) + second.shift});
+                              });
     return found;
 }
 
 /// Returns for each direction the distance by which the first solid has to move along it to leave all simplices of the
 /// second solid that it overlaps now [m].
-std::vector<Real> ways_out(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
-                           std::span<const Vec3> direction) {
-    std::vector<Real> way(direction.size(), 0);
-    for_each_meeting(first, second, tolerance,
-                     [&](Index, Index, const Simplex&, const Simplex&, const SimplexOverlap& overlap) {
-                         for (std::size_t d = 0; d < way.size(); ++d)
-                             way[d] = std::max(way[d], overlap.way_out(direction[d]));
-                     });
-    return way;
+std::vector<Real> exit_distances(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
+                                 std::span<const Vec3> direction) {
+    std::vector<Real> distance(direction.size(), 0);
+    for_each_overlapping_pair(first, second, tolerance,
+                              [&](Index, Index, const Simplex&, const Simplex&, const SimplexOverlap& overlap) {
+                                  for (std::size_t d = 0; d < distance.size(); ++d)
+                                      distance[d] = std::max(distance[d], overlap.exit_distance(direction[d]));
+                              });
+    return distance;
 }
 
 bool all_inside(const PlacedSolid& inner, const PlacedSolid& outer, Real tolerance) {
@@ -92,7 +92,7 @@ OverlapKind kind_of(const PlacedSolid& first, const PlacedSolid& second, Real to
 
 /// Distance by which the first solid has to move along a unit direction until all points of the first solid are beyond
 /// all points of the second solid [m].
-Real way_out_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
+Real exit_distance_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
     Real lowest = infinity, highest = -infinity;
     for (const Index n : first.solid.surface_point)
         lowest = std::min(lowest, direction.dot(first.solid.point[static_cast<std::size_t>(n)] + first.shift));
@@ -113,9 +113,9 @@ public:
     void add(const Vec3& along) {
         // Cosine of 6 degrees; a direction that is wrong by this angle makes the separating distance 0.5 % longer.
         constexpr Real nearly_same = 0.995;
-        constexpr std::size_t most = 48;
+        constexpr std::size_t max_directions = 48;
         const Real length = along.norm();
-        if (!(length > 0) || found_.size() == most) return;
+        if (!(length > 0) || found_.size() == max_directions) return;
         const Vec3 direction = along / length;
         for (const Vec3& other : found_)
             if (other.dot(direction) > nearly_same) return;
@@ -127,9 +127,9 @@ private:
     std::vector<Vec3> found_;
 };
 
-void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Directions& directions) {
+void add_normals(const Solid& solid, const std::vector<char>& overlaps, Real sign, Directions& directions) {
     for (const SolidTriangle& t : solid.surface) {
-        if (!met[static_cast<std::size_t>(t.simplex)]) continue;
+        if (!overlaps[static_cast<std::size_t>(t.simplex)]) continue;
         const auto at = [&](std::size_t k) -> const Vec3& { return solid.point[static_cast<std::size_t>(t.node[k])]; };
         const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
         directions.add(sign * normal);
@@ -140,23 +140,24 @@ void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Di
 /// Directions along which the first solid may leave the second solid. These are the direction from the centre of the
 /// second solid to the centre of the first, and normals of faces of overlapping simplices: outward normals of the
 /// second solid and inward normals of the first.
-Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const Meeting> meetings) {
+Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const SimplexPair> pairs) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
-    std::vector<char> met_first(first.solid.simplex.size(), 0), met_second(second.solid.simplex.size(), 0);
-    for (const Meeting& m : meetings)
-        met_first[static_cast<std::size_t>(m.first)] = met_second[static_cast<std::size_t>(m.second)] = 1;
-    add_normals(second.solid, met_second, 1, directions);
-    add_normals(first.solid, met_first, -1, directions);
+    std::vector<char> first_overlaps(first.solid.simplex.size(), 0), second_overlaps(second.solid.simplex.size(), 0);
+    for (const SimplexPair& pair : pairs)
+        first_overlaps[static_cast<std::size_t>(pair.first)] = second_overlaps[static_cast<std::size_t>(pair.second)] =
+            1;
+    add_normals(second.solid, second_overlaps, 1, directions);
+    add_normals(first.solid, first_overlaps, -1, directions);
     return directions;
 }
 
 /// Extent of the positions of all overlaps along a direction [m].
-Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
+Real extent(std::span<const SimplexPair> pairs, const Vec3& direction) {
     Real lowest = infinity, highest = -infinity;
-    for (const Meeting& m : meetings) {
-        lowest = std::min(lowest, direction.dot(m.place));
-        highest = std::max(highest, direction.dot(m.place));
+    for (const SimplexPair& pair : pairs) {
+        lowest = std::min(lowest, direction.dot(pair.center));
+        highest = std::max(highest, direction.dot(pair.center));
     }
     return highest - lowest;
 }
@@ -165,16 +166,16 @@ Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
 /// that it overlaps now, plus the extent of the region of overlap along the direction. Without the extent, a direction
 /// along a long region of overlap would seem cheap, although the motion would meet further simplices.
 Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
-                    std::span<const Meeting> meetings) {
-    const Directions directions = likely_directions(first, second, meetings);
-    const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
+                    std::span<const SimplexPair> pairs) {
+    const Directions directions = likely_directions(first, second, pairs);
+    const std::vector<Real> distance = exit_distances(first, second, tolerance, directions.span());
     // A cost must be smaller by more than rounding errors to replace an earlier one, so that the first of equal costs
     // is used on every machine.
     constexpr Real shorter = 1 - 1e-6;
     Vec3 best = Vec3::UnitZ();
     Real least = infinity;
-    for (std::size_t d = 0; d < way.size(); ++d)
-        if (const Real length = way[d] + extent(meetings, directions.span()[d]); length < shorter * least) {
+    for (std::size_t d = 0; d < distance.size(); ++d)
+        if (const Real length = distance[d] + extent(pairs, directions.span()[d]); length < shorter * least) {
             least = length;
             best = directions.span()[d];
         }
@@ -182,32 +183,32 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
 }
 
 /// Distance by which the first solid has to move along `direction` until it overlaps no simplex of the second solid
-/// [m]. Each iteration moves it out of the simplices that it overlaps at its current position. If most_tries iterations
+/// [m]. Each iteration moves it out of the simplices that it overlaps at its current position. If max_tries iterations
 /// do not suffice, the result is the distance that takes all points of the first solid past all points of the second.
-Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
-    constexpr int most_tries = 16;
-    Real gone = 0;
-    for (int i = 0; i < most_tries; ++i) {
-        const PlacedSolid there{first.solid, first.shift + gone * direction};
-        const Real more = ways_out(there, second, tolerance, {&direction, 1}).front();
-        if (!(more > 0)) return gone;
-        gone += more;
+Real exit_distance_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
+    constexpr int max_tries = 16;
+    Real moved = 0;
+    for (int i = 0; i < max_tries; ++i) {
+        const PlacedSolid shifted{first.solid, first.shift + moved * direction};
+        const Real further = exit_distances(shifted, second, tolerance, {&direction, 1}).front();
+        if (!(further > 0)) return moved;
+        moved += further;
     }
-    return way_out_of_points(first, second, direction);
+    return exit_distance_of_points(first, second, direction);
 }
 
 /// Finds the separating motion if one of the solids contains the other. The motion takes all points of the first solid
 /// past all points of the second, along the line between the centres or along a coordinate axis; the shortest of these
 /// motions is used.
-void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
+void pass_over(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
     for (Index axis : {2, 0, 1})
         for (Real sign : {1.0, -1.0}) directions.add(sign * Vec3::Unit(axis));
     overlap.depth = infinity;
     for (const Vec3& direction : directions.span())
-        if (const Real way = way_out_of_points(first, second, direction); way < overlap.depth) {
-            overlap.depth = way;
+        if (const Real distance = exit_distance_of_points(first, second, direction); distance < overlap.depth) {
+            overlap.depth = distance;
             overlap.direction = direction;
         }
 }
@@ -224,26 +225,26 @@ bool is_within(const PlacedSolid& inner, const PlacedSolid& outer) {
 
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
     if (first.solid.simplex.empty() || !boxes_overlap(first.box(), second.box())) return std::nullopt;
-    const std::vector<Meeting> meetings = find_meetings(first, second, tolerance);
+    const std::vector<SimplexPair> pairs = find_overlapping_pairs(first, second, tolerance);
     Overlap overlap{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
-    if (meetings.empty()) {
+    if (pairs.empty()) {
         const bool inside = is_within(first, second);
         if (!inside && !is_within(second, first)) return std::nullopt;
         overlap.kind = inside ? OverlapKind::inside : OverlapKind::around;
         overlap.place = middle_of_points(inside ? first : second);
-        go_past(first, second, overlap);
+        pass_over(first, second, overlap);
         return overlap;
     }
-    Aabb places = empty_box();
-    for (const Meeting& m : meetings) grow(places, m.place);
-    overlap.place = middle(places);
+    Aabb centers = empty_box();
+    for (const SimplexPair& pair : pairs) grow(centers, pair.center);
+    overlap.place = middle(centers);
     overlap.kind = kind_of(first, second, tolerance);
     if (overlap.kind != OverlapKind::crossing) {
-        go_past(first, second, overlap);
+        pass_over(first, second, overlap);
         return overlap;
     }
-    overlap.direction = best_direction(first, second, tolerance, meetings);
-    overlap.depth = way_out_along(first, second, tolerance, overlap.direction);
+    overlap.direction = best_direction(first, second, tolerance, pairs);
+    overlap.depth = exit_distance_along(first, second, tolerance, overlap.direction);
     return overlap;
 }
 

@@ -196,10 +196,10 @@ private:
         const bool both_move = kind != PairKind::collider && is_movable(inputs_.body, second);
         if (!inputs_.owners.owns(inputs_.body, first, both_move ? second : no_index)) return;
         if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
-        const Vec3 apart = kind == PairKind::collider
-                               ? Vec3(Vec3::Zero())
-                               : Vec3(inputs_.body.frame[first].position - inputs_.body.frame[second].position);
-        found.push_back({key, kind, first, second, -infinity, PairState::unknown, apart, 0});
+        const Vec3 frame_offset = kind == PairKind::collider
+                                      ? Vec3(Vec3::Zero())
+                                      : Vec3(inputs_.body.frame[first].position - inputs_.body.frame[second].position);
+        found.push_back({key, kind, first, second, -infinity, PairState::unknown, frame_offset, 0});
     }
 
     /// Sorts the found pairs by key. The leading bits of the key are a flag for colliders and the slot of the first
@@ -207,8 +207,8 @@ private:
     void sort_pairs() {
         const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
         const auto group_of = [&](const FoundPair& pair) {
-            const PairSlots named = slots_of_pair(pair.key);
-            return (named.is_collider ? slots : 0) + named.first;
+            const PairSlots pair_slots = slots_of_pair(pair.key);
+            return (pair_slots.is_collider ? slots : 0) + pair_slots.first;
         };
         Column<Index>& begin = memory_.group_begin;
         begin.assign(groups + 1, 0);
@@ -241,13 +241,13 @@ private:
 };
 
 bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
-    const auto& of_second = pair.kind == PairKind::collider ? memory.collider_forgotten : memory.body_forgotten;
-    return memory.body_forgotten[pair.first] || of_second[pair.second];
+    const auto& second_forgotten = pair.kind == PairKind::collider ? memory.collider_forgotten : memory.body_forgotten;
+    return memory.body_forgotten[pair.first] || second_forgotten[pair.second];
 }
 
 /// For each found pair that PairTable already contains: copies its values from PairTable, and stores its row of
 /// PairTable in memory.old_row. Pairs of an object that is forgotten (added or moved by the user) count as new.
-void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
+void copy_known_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
     memory.old_row.assign(memory.pairs.size(), no_index);
     parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
@@ -275,17 +275,17 @@ void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     memory.candidates.resize(lists);
     memory.asleep_until.resize(lists);
     memory.leaf_pairs.resize(lists);
-    memory.given_away.assign(lists, 0);
+    memory.list_is_kept.assign(lists, 0);
     for (const Index old : memory.old_row)
-        if (old != no_index) memory.given_away[old] = 1;
+        if (old != no_index) memory.list_is_kept[old] = 1;
     memory.old_list.resize(lists);
-    for (std::size_t row = 0, spare = 0; row < lists; ++row) {
+    for (std::size_t row = 0, free_list = 0; row < lists; ++row) {
         if (row < count && memory.old_row[row] != no_index) {
             memory.old_list[row] = memory.old_row[row];
             continue;
         }
-        while (memory.given_away[spare]) ++spare;
-        memory.old_list[row] = static_cast<Index>(spare++);
+        while (memory.list_is_kept[free_list]) ++free_list;
+        memory.old_list[row] = static_cast<Index>(free_list++);
     }
     parallel_for(executor, lists, pairs_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
@@ -336,7 +336,7 @@ void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs
 /// Replaces the rows of PairTable by memory.pairs. A pair that PairTable already contained keeps its candidate list,
 /// unless a partner is forgotten (added or moved by the user).
 void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
-    recall_pairs(executor, memory, pairs);
+    copy_known_pairs(executor, memory, pairs);
     move_lists(executor, memory, pairs);
     write_rows(executor, memory, pairs);
 }

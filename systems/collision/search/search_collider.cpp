@@ -71,12 +71,12 @@ private:
         // nearest to the collider, bounds the distance of every node; least of these bounds. `flat`: distance that all
         // nodes can move while they stay in one flat region of the collider, where only nodes can touch.
         Real hull = infinity, flat = infinity;
-        const Index place = flat_place(geometry_, middle);
+        const Index region = flat_region(geometry_, middle);
         const HullTangent tangent = hull_tangent(geometry_, middle);
         for (Index v = vertices().begin; v < vertices().end; ++v) {
             const Vec3 point = local(inputs_.surface.vertices.node[v]);
             hull = std::min(hull, tangent.bound(point));
-            flat = std::min(flat, flat_reach(geometry_, place, point));
+            flat = std::min(flat, flat_reach(geometry_, region, point));
         }
         return std::max(hull, flat);
     }

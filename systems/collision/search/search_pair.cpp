@@ -19,28 +19,28 @@ namespace skerry {
 
 namespace {
 
-// Numbers of leaves whose data is cached. `kept_leaves`: two bodies that lie on each other touch with about ten leaves.
-// `kept_leaves_of_self`: a body that is paired with itself has many pairs of leaves, and the second leaf changes with
-// each pair; the data of 128 leaves fit into the second-level cache of a processor.
-constexpr std::size_t kept_leaves = 16, kept_leaves_of_self = 128;
+// Numbers of leaves whose data is cached. `cached_leaves`: two bodies that lie on each other touch with about ten
+// leaves. `cached_leaves_of_self`: a body that is paired with itself has many pairs of leaves, and the second leaf
+// changes with each pair; the data of 128 leaves fit into the second-level cache of a processor.
+constexpr std::size_t cached_leaves = 16, cached_leaves_of_self = 128;
 template <class Features, std::size_t Count>
-using KeptLeaves = std::array<Features, Count>;
+using CachedLeaves = std::array<Features, Count>;
 
 /// Cached features of the leaves of one tree. Leaf row r is cached at index r % Count.
 template <std::size_t Count>
-struct KeptFeatures {
-    KeptLeaves<LeafPoints, Count> points;
-    KeptLeaves<LeafEdges, Count> edges;
-    KeptLeaves<LeafTriangleBoxes, Count> boxes;
+struct CachedFeatures {
+    CachedLeaves<LeafPoints, Count> points;
+    CachedLeaves<LeafEdges, Count> edges;
+    CachedLeaves<LeafTriangleBoxes, Count> boxes;
 };
 
 // Number of pairs of leaves that are collected before their features are compared.
-constexpr std::size_t most_near = 32;
+constexpr std::size_t max_near_leaves = 32;
 
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
 
 template <std::size_t Size>
-bool share_node(const std::array<Index, Size>& a, Index node) {
+bool has_node(const std::array<Index, Size>& a, Index node) {
     return std::find(a.begin(), a.end(), node) != a.end();
 }
 
@@ -63,11 +63,11 @@ public:
     void run() {
         const Index root = inputs_.body.bvh_nodes[pair_.first].begin;
         for (const LeafPair& leaves : pair_.leaf_pairs)
-            add_near({root + leaves.first, root + leaves.second, leaves.spare});
+            add_near_leaves({root + leaves.first, root + leaves.second, leaves.spare});
         if (!Self) find_near_leaves();
-        compare_near();
-        empty_queue(FeaturePair::point_triangle);
-        empty_queue(FeaturePair::edge_edge);
+        compare_near_leaves();
+        flush_queue(FeaturePair::point_triangle);
+        flush_queue(FeaturePair::edge_edge);
     }
 
 private:
@@ -83,7 +83,7 @@ private:
             inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
             false, [&](Index a, Index b) { return distance_squared(box_[a], box_[b]) < radius_squared_; },
             [&](Index a, Index b) {
-                add_near({a, b, margin_});
+                add_near_leaves({a, b, margin_});
                 return false;
             });
     }
@@ -113,16 +113,16 @@ private:
 
     const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
 
-    void add_near(const NearLeaves& leaves) {
-        if (near_count_ == most_near) compare_near();
-        near_[near_count_++] = leaves;
+    void add_near_leaves(const NearLeaves& leaves) {
+        if (near_count_ == max_near_leaves) compare_near_leaves();
+        near_leaves_[near_count_++] = leaves;
         prefetch_leaf(leaves.first);
         prefetch_leaf(leaves.second);
     }
 
-    void compare_near() {
+    void compare_near_leaves() {
         for (std::size_t i = 0; i < near_count_; ++i) {
-            const auto [a, b, margin] = near_[i];
+            const auto [a, b, margin] = near_leaves_[i];
             if (Self) set_margin(margin);
             if (a == b)
                 compare_within(a);
@@ -141,7 +141,7 @@ private:
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, first_.edges), &other = features_of(b, second_.edges);
         std::array<unsigned, 3> near;
-        if (!any_near(other, box_[a], near)) return;
+        if (!find_near_edges(other, box_[a], near)) return;
         for (std::size_t group = 0; group < own.groups(); ++group)
             for_each_lane(
                 own.used(group) & lanes_below(distance_squared(own.box[group], box_[b]), edge_radius_squared_),
@@ -164,16 +164,16 @@ private:
     }
 
     template <class Features, std::size_t Count>
-    const Features& features_of(Index a, KeptLeaves<Features, Count>& kept) const {
+    const Features& features_of(Index a, CachedLeaves<Features, Count>& cache) const {
         const Index leaf = node(a).leaf;
-        Features& features = kept[static_cast<std::size_t>(leaf) % Count];
+        Features& features = cache[static_cast<std::size_t>(leaf) % Count];
         if (features.leaf != leaf) features.fill(inputs_, leaf);
         return features;
     }
 
     /// Sets `near`: for each group of eight edges, the bits of the edges close to a box. Returns true if any edge is
     /// close.
-    bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
+    bool find_near_edges(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
         unsigned any = 0;
         for (std::size_t group = 0; group < edges.groups(); ++group)
             any |= near[group] =
@@ -181,50 +181,52 @@ private:
         return any != 0;
     }
 
-    /// Compares the points of the leaf `owner` with the triangles of the leaf `other`. `of_second`: true if the points
-    /// belong to the second body.
-    void compare_points(Index owner, Index other, bool of_second) {
-        const LeafPoints& points = of_second ? features_of(owner, second_.points) : features_of(owner, first_.points);
+    /// Compares the points of the leaf `owner` with the triangles of the leaf `other`. `points_on_second`: true if the
+    /// points belong to the second body.
+    void compare_points(Index owner, Index other, bool points_on_second) {
+        const LeafPoints& points =
+            points_on_second ? features_of(owner, second_.points) : features_of(owner, first_.points);
         for (std::size_t group = 0; group < points.groups(); ++group)
             for_each_lane(
                 points.used(group) & lanes_below(distance_squared(points.at[group], box_[other]), radius_squared_),
                 [&](std::size_t lane) {
                     const LeafFeatures::Point& point = points.list->point[leaf_lanes * group + lane];
-                    compare_point(point.node, point.row, other, of_second);
+                    compare_point(point.node, point.row, other, points_on_second);
                 });
     }
 
     /// Puts the pairs of a point and the near triangles of a leaf into the queue, in which their distances are
     /// computed.
-    void compare_point(Index n, Index vertex, Index other, bool of_second) {
+    void compare_point(Index n, Index vertex, Index other, bool points_on_second) {
         const LeafBoxes& boxes =
-            of_second ? features_of(other, first_.boxes).box : features_of(other, second_.boxes).box;
+            points_on_second ? features_of(other, first_.boxes).box : features_of(other, second_.boxes).box;
         const Vec3& at = position(n);
         const unsigned near =
             used_lanes(node(other).count, 0) & lanes_below(distance_squared(boxes, {at, at}), radius_squared_);
         for_each_lane(near, [&](std::size_t lane) {
             const Index triangle = leaf_triangle(other)[lane];
             const auto& corner = triangle_.node[triangle];
-            if (Self && share_node(corner, n)) return;
-            put({point_triangle_feature(of_second && !Self, vertex - vertices(of_second).begin,
-                                        triangle - triangles(of_second).begin),
-                 vertex, triangle},
-                {n, corner[0], corner[1], corner[2]});
+            if (Self && has_node(corner, n)) return;
+            enqueue({point_triangle_feature(points_on_second && !Self, vertex - vertices(points_on_second).begin,
+                                            triangle - triangles(points_on_second).begin),
+                     vertex, triangle},
+                    {n, corner[0], corner[1], corner[2]});
         });
     }
 
-    /// Compares edge i of one leaf with those edges of another leaf whose bits are set in `with`.
-    void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
+    /// Compares edge i of one leaf with those edges of another leaf whose bits are set in `selected`.
+    void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& selected) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
         const auto& own = a.node(i);
         for (std::size_t group = 0; group < b.groups(); ++group) {
-            if (with[group] == 0) continue;
-            const unsigned lanes = with[group] & lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
+            if (selected[group] == 0) continue;
+            const unsigned lanes =
+                selected[group] & lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
             for_each_lane(lanes, [&](std::size_t lane) {
                 const std::size_t j = leaf_lanes * group + lane;
                 const auto& other = b.node(j);
-                if (Self && (share_node(other, own[0]) || share_node(other, own[1]))) return;
-                put(edges_candidate(a.row(i), b.row(j)), {own[0], own[1], other[0], other[1]});
+                if (Self && (has_node(other, own[0]) || has_node(other, own[1]))) return;
+                enqueue(edges_candidate(a.row(i), b.row(j)), {own[0], own[1], other[0], other[1]});
             });
         }
     }
@@ -238,19 +240,19 @@ private:
 
     /// Puts two features whose boxes are close into the queue of their kind. The distances of eight pairs of features
     /// are computed at once.
-    void put(const Candidate& candidate, const CandidateNodes& nodes) {
+    void enqueue(const Candidate& candidate, const CandidateNodes& nodes) {
         const FeaturePair kind = skerry::features_of(candidate);
         Queue& queue = queue_[static_cast<std::size_t>(kind)];
         queue.candidate[queue.count] = candidate;
         queue.radius[queue.count] = zone_of(kind) + margin_;
         set_lane(queue.node, queue.count, nodes);
-        if (++queue.count == candidate_lanes) empty_queue(kind);
+        if (++queue.count == candidate_lanes) flush_queue(kind);
     }
 
     /// Adds the close candidates of the queue to found_, except features of one body whose distance in the rest shape
     /// is below the contact distance. Each candidate needs no test while its features are farther apart than the zone
     /// (PairScale).
-    void empty_queue(FeaturePair kind) {
+    void flush_queue(FeaturePair kind) {
         Queue& queue = queue_[static_cast<std::size_t>(kind)];
         if (queue.count == 0) return;
         for (auto& node : queue.node)
@@ -273,8 +275,12 @@ private:
         return kind == FeaturePair::edge_edge ? pair_.scale.edge_depth : pair_.scale.zone;
     }
 
-    Range vertices(bool of_second) const { return inputs_.body.vertices[of_second ? pair_.second : pair_.first]; }
-    Range triangles(bool of_first) const { return inputs_.body.triangles[of_first ? pair_.first : pair_.second]; }
+    Range vertices(bool of_second_body) const {
+        return inputs_.body.vertices[of_second_body ? pair_.second : pair_.first];
+    }
+    Range triangles(bool of_first_body) const {
+        return inputs_.body.triangles[of_first_body ? pair_.first : pair_.second];
+    }
 
     bool touched_at_rest(const auto& first, const auto& second) const {
         return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, first, second) <
@@ -301,10 +307,10 @@ private:
     const bool first_is_point_, second_is_point_;
     // Cached data of leaves that were recently read, for the first and the second tree. Each leaf is compared with
     // several leaves of the other tree.
-    KeptFeatures<kept_leaves> first_;
-    KeptFeatures<Self ? kept_leaves_of_self : kept_leaves> second_;
+    CachedFeatures<cached_leaves> first_;
+    CachedFeatures<Self ? cached_leaves_of_self : cached_leaves> second_;
     // Collected pairs of leaves whose features are not compared yet.
-    std::array<NearLeaves, most_near> near_;
+    std::array<NearLeaves, max_near_leaves> near_leaves_;
     std::size_t near_count_ = 0;
     std::array<Queue, 2> queue_;  // by FeaturePair
 };
@@ -313,9 +319,9 @@ Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std:
                    Column<FoundCandidate>& found) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return infinity;
-    const Real apart =
-        std::max(pair.apart, std::sqrt(distance_squared(box[first.begin], box[second.begin]))) - pair.scale.zone;
-    if (apart >= pair.margin) return pair.travel_base + apart;
+    const Real distance =
+        std::max(pair.min_distance, std::sqrt(distance_squared(box[first.begin], box[second.begin]))) - pair.scale.zone;
+    if (distance >= pair.margin) return pair.travel_base + distance;
     if (pair.kind == PairKind::self)
         BodySearch<true>(inputs, pair, box, found).run();
     else

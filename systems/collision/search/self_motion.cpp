@@ -13,10 +13,10 @@ namespace skerry {
 
 namespace {
 
-/// Computes, for each tree node of a body, the box of the vectors of_node[n] of the mesh nodes n below it. The vectors
-/// are for example displacements.
-void fit(const CollisionInputs& inputs, Index body, std::span<const Vec3> of_node, Column<Aabb>& box) {
-    refit_bvh(inputs.body.bvh_nodes[body], inputs.bvh_node, inputs.leaf_nodes, of_node, box);
+/// Computes, for each tree node of a body, the box of the vectors node_vector[n] of the mesh nodes n below it. The
+/// vectors are for example displacements.
+void fit(const CollisionInputs& inputs, Index body, std::span<const Vec3> node_vector, Column<Aabb>& box) {
+    refit_bvh(inputs.body.bvh_nodes[body], inputs.bvh_node, inputs.leaf_nodes, node_vector, box);
 }
 
 /// Calls visit(n) for each node n on the surface of a body.
@@ -36,33 +36,33 @@ struct RigidDisplacement {
 /// large rotations the fit is poor, but the bounds hold for any rotation.
 RigidDisplacement rigid_displacement(const CollisionInputs& inputs, Index body, const SelfSearch& self,
                                      auto&& position) {
-    RigidDisplacement part;
+    RigidDisplacement rigid;
     for_each_node(inputs, body, [&](Index n) {
-        part.before += self.origin[n];
-        part.now += position(n);
+        rigid.before += self.origin[n];
+        rigid.now += position(n);
     });
     const Real count = inputs.body.vertices[body].size();
-    part.before /= count;
-    part.now /= count;
+    rigid.before /= count;
+    rigid.now /= count;
     Mat3 inertia = Mat3::Zero();
     Vec3 moment = Vec3::Zero();
     for_each_node(inputs, body, [&](Index n) {
-        const Vec3 r = self.origin[n] - part.before;
+        const Vec3 r = self.origin[n] - rigid.before;
         inertia.diagonal().array() += r.squaredNorm();
         inertia -= r * r.transpose();
-        moment += r.cross(position(n) - part.now);
+        moment += r.cross(position(n) - rigid.now);
     });
     const Vec3 turn = inertia.inverse() * moment;
-    if (turn.allFinite()) part.rotation = rotation_matrix(turn);
-    return part;
+    if (turn.allFinite()) rigid.rotation = rotation_matrix(turn);
+    return rigid;
 }
 
 /// Computes the displacements of the surface nodes since the last update without the rigid motion of the body
 /// (self.moved), and their boxes. position(n): position of node n [m].
 void fit_motion(const CollisionInputs& inputs, Index body, SelfSearch& self, auto&& position) {
-    const RigidDisplacement part = rigid_displacement(inputs, body, self, position);
+    const RigidDisplacement rigid = rigid_displacement(inputs, body, self, position);
     for_each_node(inputs, body, [&](Index n) {
-        self.moved[n] = position(n) - part.now - part.rotation * (self.origin[n] - part.before);
+        self.moved[n] = position(n) - rigid.now - rigid.rotation * (self.origin[n] - rigid.before);
     });
     fit(inputs, body, self.moved, self.moved_box);
 }
@@ -87,7 +87,8 @@ constexpr auto leaves_before = [](const LeafPair& a, const LeafPair& b) {
 /// Lists the pairs of leaves that are close to each other. The spare distance M of a pair (self_motion.h) follows from
 /// its boxes; a pair that was listed before keeps its previous spare distance if that is larger. Tree nodes are in
 /// depth-first order, so a forward search from each leaf finds the pairs sorted by first and second leaf.
-void list_close(const SelfMotion& motion, std::span<const Aabb> box, const SelfSearch& self, LeafPairTable& pairs) {
+void list_close_pairs(const SelfMotion& motion, std::span<const Aabb> box, const SelfSearch& self,
+                      LeafPairTable& pairs) {
     const Index root = motion.root(), end = motion.inputs.body.bvh_nodes[motion.body].end;
     const Real margin = std::max(listed_edges * motion.scale.edge, motion.margin_of(self, root, root)),
                distance = motion.scale.zone + margin;
@@ -139,31 +140,31 @@ public:
     explicit SortedLeafPairs(std::span<const LeafPair> pairs) : pairs_(pairs) {}
 
     bool contains(Index first, Index second) {
-        Place& place = recent_[static_cast<std::size_t>(first) % recent_.size()];
-        if (place.first != first) place = place_of(first);
-        for (std::size_t i = place.begin; i < pairs_.size() && pairs_[i].first == first; ++i)
+        LeafRun& run = recent_[static_cast<std::size_t>(first) % recent_.size()];
+        if (run.first != first) run = run_of(first);
+        for (std::size_t i = run.begin; i < pairs_.size() && pairs_[i].first == first; ++i)
             if (pairs_[i].second >= second) return pairs_[i].second == second;
         return false;
     }
 
 private:
     /// Index in the list, `begin`, of the first pair whose first leaf is `first`.
-    struct Place {
+    struct LeafRun {
         Index first = no_index;
         std::size_t begin = 0;
     };
 
-    Place place_of(Index first) const {
+    LeafRun run_of(Index first) const {
         const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), LeafPair{first, 0, 0}, leaves_before);
         return {first, static_cast<std::size_t>(at - pairs_.begin())};
     }
 
     std::span<const LeafPair> pairs_;
-    std::array<Place, 64> recent_;
+    std::array<LeafRun, 64> recent_;
 };
 
-/// Removes the candidates of pair p whose leaves satisfy is_gone(a, b).
-void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&& is_gone) {
+/// Removes the candidates of pair p whose leaves satisfy is_removed(a, b).
+void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&& is_removed) {
     Column<Candidate>& candidates = pairs.candidates[p];
     Column<Real>& asleep_until = pairs.asleep_until[p];
     std::size_t count = 0;
@@ -172,7 +173,7 @@ void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&&
         const bool edges = is_edge_edge(candidate.feature);
         const Index a = edges ? self.leaf_of_edge[candidate.first] : self.leaf_of_vertex[candidate.first],
                     b = edges ? self.leaf_of_edge[candidate.second] : self.leaf_of_triangle[candidate.second];
-        if (is_gone(std::min(a, b), std::max(a, b))) continue;
+        if (is_removed(std::min(a, b), std::max(a, b))) continue;
         candidates[count] = candidate;
         asleep_until[count++] = asleep_until[c];
     }
@@ -196,56 +197,58 @@ Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearc
     const CollisionInputs& inputs = motion.inputs;
     fit_motion(inputs, motion.body, self, [&](Index n) -> const Vec3& { return inputs.position[n]; });
     store_speeds(motion, self);
-    const Real left = least_spare(pairs) - greatest_motion(motion, self);
-    if (left > motion.reach_of(self, motion.root(), motion.root())) return left;
+    const Real remaining = smallest_spare(pairs) - greatest_motion(motion, self);
+    if (remaining > motion.reach_of(self, motion.root(), motion.root())) return remaining;
     store_origin(motion, self);
-    bool holds = true;
+    bool complete = true;
     for (LeafPair& pair : pairs) {
         const Index a = motion.root() + pair.first, b = motion.root() + pair.second;
         pair.spare -= farthest(self.moved_box[a], self.moved_box[b]);
-        holds &= pair.spare > motion.reach_of(self, a, b);
+        complete &= pair.spare > motion.reach_of(self, a, b);
     }
-    return holds ? least_spare(pairs) : 0;
+    return complete ? smallest_spare(pairs) : 0;
 }
 
-void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool anew, Index p, PairTable& pairs) {
+void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool compare_all, Index p,
+                      PairTable& pairs) {
     const Index root = motion.root();
     SelfSearch& self = pairs.self;
     LeafPairTable& leaves = pairs.leaf_pairs[p];
-    if (anew) {
+    if (compare_all) {
         store_origin(motion, self);
         store_speeds(motion, self);
         leaves.listed.clear();
         pairs.candidates[p].clear();
         pairs.asleep_until[p].clear();
     }
-    const bool lists = leaves.listed.empty() || !(leaves.listed[0].spare > motion.reach_of(self, root, root));
-    if (lists) list_close(motion, box, self, leaves);
+    const bool relist = leaves.listed.empty() || !(leaves.listed[0].spare > motion.reach_of(self, root, root));
+    if (relist) list_close_pairs(motion, box, self, leaves);
     leaves.searched.clear();
     const Real greatest_reach = motion.reach_of(self, root, root);
     for (std::size_t i = 1; i < leaves.listed.size(); ++i) {
         LeafPair& pair = leaves.listed[i];
         const Index a = root + pair.first, b = root + pair.second;
-        if (!anew && pair.spare > std::max(greatest_reach, renewed_part * motion.skin)) continue;
+        if (!compare_all && pair.spare > std::max(greatest_reach, renewal_fraction * motion.skin)) continue;
         const Real margin = motion.margin_of(self, a, b);
-        if (pair.spare > (anew ? margin : std::max(motion.reach_of(self, a, b), renewed_part * motion.skin))) continue;
+        if (pair.spare > (compare_all ? margin : std::max(motion.reach_of(self, a, b), renewal_fraction * motion.skin)))
+            continue;
         pair.spare = margin;
         leaves.searched.push_back(pair);
         self.is_searched[a] = self.is_searched[b] = 1;
     }
     const Real listed = motion.scale.zone + leaves.listed[0].spare;
     SortedLeafPairs searched(leaves.searched.span());
-    const auto is_gone = [&](Index a, Index b) {
-        if (lists && distance_squared(box[a], box[b]) > listed * listed) return true;
+    const auto is_removed = [&](Index a, Index b) {
+        if (relist && distance_squared(box[a], box[b]) > listed * listed) return true;
         return self.is_searched[a] && self.is_searched[b] && searched.contains(a - root, b - root);
     };
     find_leaves(motion.inputs, motion.body, self);
-    remove_candidates(self, p, pairs, is_gone);
+    remove_candidates(self, p, pairs, is_removed);
     for (const LeafPair& pair : leaves.searched)
         self.is_searched[root + pair.first] = self.is_searched[root + pair.second] = 0;
 }
 
-Real least_spare(std::span<const LeafPair> pairs) {
+Real smallest_spare(std::span<const LeafPair> pairs) {
     Real least = infinity;
     for (const LeafPair& pair : pairs) least = std::min(least, pair.spare);
     return least;
@@ -255,17 +258,17 @@ bool moves_as_expected(const SelfMotion& motion, const StepMotion& step) {
     const CollisionInputs& inputs = motion.inputs;
     Real change_squared = 0;  // greatest difference from the motion at the present velocities [m^2]
     for_each_node(inputs, motion.body, [&](Index n) {
-        change_squared = std::max(change_squared, (step.of(n) - step.h * inputs.velocity[n]).squaredNorm());
+        change_squared = std::max(change_squared, (step.displacement(n) - step.h * inputs.velocity[n]).squaredNorm());
     });
-    const Real most = reach(step.h, Real(0), motion.gravity, motion.scale.contact_distance) / 2;
-    return change_squared < most * most;
+    const Real allowed = reach(step.h, Real(0), motion.gravity, motion.scale.contact_distance) / 2;
+    return change_squared < allowed * allowed;
 }
 
 bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, std::span<const LeafPair> pairs,
                       SelfSearch& self) {
     const CollisionInputs& inputs = motion.inputs;
-    fit_motion(inputs, motion.body, self, [&](Index n) { return Vec3(inputs.position[n] + step.of(n)); });
-    if (greatest_motion(motion, self) < least_spare(pairs)) return true;
+    fit_motion(inputs, motion.body, self, [&](Index n) { return Vec3(inputs.position[n] + step.displacement(n)); });
+    if (greatest_motion(motion, self) < smallest_spare(pairs)) return true;
     return std::ranges::all_of(pairs, [&](const LeafPair& pair) {
         return farthest(self.moved_box[motion.root() + pair.first], self.moved_box[motion.root() + pair.second]) <
                pair.spare;

@@ -45,7 +45,7 @@ inline constexpr Real steps_ahead = 4;
 inline constexpr Real listed_edges = 1;
 // When some pairs are compared, all pairs are compared whose spare distance is at most this fraction of
 // SelfMotion::skin, because a search has a fixed cost.
-inline constexpr Real renewed_part = 0.5;
+inline constexpr Real renewal_fraction = 0.5;
 
 /// Largest distance between a point in one box and a point in another box.
 inline Real farthest(const Aabb& a, const Aabb& b) {
@@ -93,14 +93,14 @@ void resize(const CollisionInputs& inputs, SelfSearch& self);
 Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
 /// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new
-/// spare distances. If `anew` is true, all close pairs of leaves are compared. Otherwise update_spare must have been
-/// called in this step. The boxes of the tree must be computed from the present positions. Removes the candidates of
-/// the pairs in `searched`, because the comparison finds them again, and the candidates of pairs that are no longer
+/// spare distances. If `compare_all` is true, all close pairs of leaves are compared. Otherwise update_spare must have
+/// been called in this step. The boxes of the tree must be computed from the present positions. Removes the candidates
+/// of the pairs in `searched`, because the comparison finds them again, and the candidates of pairs that are no longer
 /// close.
-void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool anew, Index p, PairTable& pairs);
+void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool compare_all, Index p, PairTable& pairs);
 
 /// Smallest spare distance [m].
-Real least_spare(std::span<const LeafPair> pairs);
+Real smallest_spare(std::span<const LeafPair> pairs);
 
 /// True if the nodes move so nearly at their present velocities that the motion of the step is within the bound R of
 /// all pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed, so

@@ -32,10 +32,10 @@ BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& set
     }
     // The reach of a body serves its pairs with all partners, and a partner may be held in place. So the full gravity
     // is used, although gravity does not change the relative velocity of two bodies that fall freely.
-    const auto of = [&](Real speed) {
+    const auto reach_at = [&](Real speed) {
         return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);
     };
-    return {of(in_frame), of(in_world)};
+    return {reach_at(in_frame), reach_at(in_world)};
 }
 
 Real frame_reach(const CollisionInputs& inputs, Index first, Index second, Real h) {

@@ -109,30 +109,32 @@ void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhL
     }
 }
 
-BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
-                           BvhTable& bvh, BvhLeafTable& leaves) {
+BvhRanges append_bvh_copy(const BvhRanges& original, const RowOffsets& offset, std::span<const Vec3> position,
+                          BvhTable& bvh, BvhLeafTable& leaves) {
     const auto first_node = static_cast<Index>(bvh.node.size()),
                first_leaf = static_cast<Index>(leaves.triangle.size());
-    const BvhRanges ranges{{first_node, first_node + like.nodes.size()}, {first_leaf, first_leaf + like.leaves.size()}};
-    const Index nodes_on = ranges.nodes.begin - like.nodes.begin, leaves_on = ranges.leaves.begin - like.leaves.begin;
-    append_again(bvh.node, like.nodes, [&](BvhNode& node) {
-        move_on(node.skip, nodes_on);
-        move_on(node.right, nodes_on);
-        move_on(node.leaf, leaves_on);
+    const BvhRanges ranges{{first_node, first_node + original.nodes.size()},
+                           {first_leaf, first_leaf + original.leaves.size()}};
+    const Index nodes_on = ranges.nodes.begin - original.nodes.begin,
+                leaves_on = ranges.leaves.begin - original.leaves.begin;
+    append_copies(bvh.node, original.nodes, [&](BvhNode& node) {
+        add_offset(node.skip, nodes_on);
+        add_offset(node.right, nodes_on);
+        add_offset(node.leaf, leaves_on);
     });
-    append_again(leaves.triangle, like.leaves, [&](LeafTriangles& rows) { move_on(rows, behind.triangles); });
-    append_again(leaves.nodes, like.leaves, [&](LeafNodes& nodes) {
-        for (auto& corner : nodes.corner) move_on(corner, behind.nodes);
-        for (std::size_t i = 0; i < LeafNodes::most; ++i) move_on(nodes.node[i], behind.nodes);
+    append_copies(leaves.triangle, original.leaves, [&](LeafTriangles& rows) { add_offset(rows, offset.triangles); });
+    append_copies(leaves.nodes, original.leaves, [&](LeafNodes& nodes) {
+        for (auto& corner : nodes.corner) add_offset(corner, offset.nodes);
+        for (std::size_t i = 0; i < LeafNodes::capacity; ++i) add_offset(nodes.node[i], offset.nodes);
     });
-    append_again(leaves.features, like.leaves, [&](LeafFeatures& features) {
+    append_copies(leaves.features, original.leaves, [&](LeafFeatures& features) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(features.edge_count); ++i) {
-            move_on(features.edge[i].row, behind.edges);
-            move_on(features.edge[i].node, behind.nodes);
+            add_offset(features.edge[i].row, offset.edges);
+            add_offset(features.edge[i].node, offset.nodes);
         }
         for (std::size_t i = 0; i < static_cast<std::size_t>(features.point_count); ++i) {
-            move_on(features.point[i].row, behind.vertices);
-            move_on(features.point[i].node, behind.nodes);
+            add_offset(features.point[i].row, offset.vertices);
+            add_offset(features.point[i].node, offset.nodes);
         }
     });
     bvh.box.resize(bvh.node.size());

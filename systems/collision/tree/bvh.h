@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "components/append_again.h"
+#include "components/append_copies.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
 #include "components/surface_table.h"
@@ -24,11 +24,11 @@ BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> tria
 /// BvhLeafTable.
 void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves);
 
-/// Appends the tree and the leaf features of a body by copying those of an earlier body with the same mesh. `like`:
-/// rows of the earlier body. `behind`: offsets from rows of the earlier body to rows of the new body. The appended rows
+/// Appends the tree and the leaf features of a body by copying those of an earlier body with the same mesh. `original`:
+/// rows of the earlier body. `offset`: offsets from rows of the earlier body to rows of the new body. The appended rows
 /// equal those of append_bvh and append_leaf_features.
-BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
-                           BvhTable& bvh, BvhLeafTable& leaves);
+BvhRanges append_bvh_copy(const BvhRanges& original, const RowOffsets& offset, std::span<const Vec3> position,
+                          BvhTable& bvh, BvhLeafTable& leaves);
 
 /// Computes the boxes of one tree from `position`, from the leaves upwards. `position` may also hold other vectors by
 /// node, for example velocities (self_motion.cpp).

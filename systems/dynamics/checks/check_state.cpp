@@ -40,8 +40,8 @@ std::array<Real, 2> max_speeds_squared(const CheckInputs& state, std::size_t blo
         highest[0] = p == nullptr ? largest_squared_length(count, free) : largest_squared_length(count, pushed);
         highest[1] = highest[0];
     }
-    for (Real& of : highest)
-        if (!(of <= std::numeric_limits<Real>::max())) of = std::numeric_limits<Real>::quiet_NaN();
+    for (Real& squared : highest)
+        if (!(squared <= std::numeric_limits<Real>::max())) squared = std::numeric_limits<Real>::quiet_NaN();
     return highest;
 }
 
@@ -54,9 +54,9 @@ Index first_not_finite(const CheckInputs& state, Range blocks) {
     return no_index;
 }
 
-Real highest_lane(const Real8& of) {
-    Real highest = of[0];
-    for (std::size_t l = 1; l < element_lanes; ++l) highest = std::max(highest, of[l]);
+Real highest_lane(const Real8& lanes) {
+    Real highest = lanes[0];
+    for (std::size_t l = 1; l < element_lanes; ++l) highest = std::max(highest, lanes[l]);
     return highest;
 }
 
@@ -92,24 +92,24 @@ struct Fastest {
     Index node = no_index;
     Index element = no_index;  // tetrahedron t: lane t % 8 of block t / 8
 
-    void look_at(const Fastest& other) {
+    void take_faster(const Fastest& other) {
         if (other.rate_squared > rate_squared) *this = other;
     }
 };
 
 /// Velocity differences of each tetrahedron of a block, as columns: velocities of corners 1 to 3 minus the velocity of
 /// corner 0 [m/s].
-LaneMat3<Real8> parting_of(const CheckInputs& state, std::size_t block) {
-    const LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
-    return state.push_out.empty() ? parting : parting + edges(state.tetrahedron_node[block], state.push_out);
+LaneMat3<Real8> velocity_differences(const CheckInputs& state, std::size_t block) {
+    const LaneMat3<Real8> difference = edges(state.tetrahedron_node[block], state.velocity_next);
+    return state.push_out.empty() ? difference : difference + edges(state.tetrahedron_node[block], state.push_out);
 }
 
 /// Squared length of the longest column in each lane [m^2/s^2].
-Real8 widest_parting(const LaneMat3<Real8>& parting) {
-    const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
-                third = dot(parting.c2, parting.c2);
-    const Real8 of_two = first < second ? second : first;
-    return of_two < third ? third : of_two;
+Real8 longest_column(const LaneMat3<Real8>& difference) {
+    const Real8 first = dot(difference.c0, difference.c0), second = dot(difference.c1, difference.c1),
+                third = dot(difference.c2, difference.c2);
+    const Real8 longer = first < second ? second : first;
+    return longer < third ? third : longer;
 }
 
 Real8 leeway_of(const CheckInputs& state, std::size_t block) {
@@ -118,11 +118,11 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
 
 /// For each tetrahedron of a block: |F'|^2 over the squared leeway (factor on max_strain_step) [1/s^2]; 0 in an unused
 /// lane. The rate of F is F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and rest positions X.
-Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
+Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& difference) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
     const auto column = [&](const Real8& a, const Real8& b, const Real8& c) {
-        return a * parting.c0 + b * parting.c1 + c * parting.c2;
+        return a * difference.c0 + b * difference.c1 + c * difference.c2;
     };
     const LaneVec3<Real8> x = column(cof.c0.x, cof.c1.x, cof.c2.x), y = column(cof.c0.y, cof.c1.y, cof.c2.y),
                           z = column(cof.c0.z, cof.c1.z, cof.c2.z);
@@ -136,30 +136,30 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
 /// corners over the smallest altitude.
 ///
 /// All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most blocks.
-/// `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
-Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
+/// `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
+Real8 squared_deformation_rate(const CheckInputs& state, std::size_t block, Real rate, Real max_relative_speed) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
-    if (all(Real8{} + part_at_most * part_at_most <= rate * rate * reach_squared)) return Real8{};
-    const LaneMat3<Real8> parting = parting_of(state, block);
-    const Real8 widest = widest_parting(parting);
+    if (all(Real8{} + max_relative_speed * max_relative_speed <= rate * rate * reach_squared)) return Real8{};
+    const LaneMat3<Real8> difference = velocity_differences(state, block);
+    const Real8 widest = longest_column(difference);
     if (all(widest <= rate * rate * reach_squared)) return Real8{};
-    const Real8 by_corners = reach > 0.0 ? widest / reach_squared : Real8{},
-                by_gradient = rate_squared_of(state, block, parting);
-    return by_corners < by_gradient ? by_corners : by_gradient;
+    const Real8 corner_rate = reach > 0.0 ? widest / reach_squared : Real8{},
+                gradient_rate = rate_squared_of(state, block, difference);
+    return corner_rate < gradient_rate ? corner_rate : gradient_rate;
 }
 
 /// Returns the greatest squared deformation rate of the tetrahedra of a block if it exceeds the square of `rate`, else
 /// 0 [1/s^2]. Marks the corners of all tetrahedra whose deformation rate exceeds `rate`.
-Real check_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
+Real check_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real max_relative_speed,
                       std::span<std::uint8_t> beside_fast) {
-    const Real8 squared = deforming_squared(state, block, rate, part_at_most);
+    const Real8 squared = squared_deformation_rate(state, block, rate, max_relative_speed);
     if (all(squared <= rate * rate)) return 0;
     for (std::size_t l = 0; l < element_lanes; ++l) {
         if (!(squared[l] > rate * rate)) continue;
         for (std::size_t a = 0; a < 4; ++a) {
-            std::uint8_t& mark = beside_fast[static_cast<std::size_t>(state.tetrahedron_node[block][a][l])];
-            std::atomic_ref<std::uint8_t>(mark).store(1, std::memory_order_relaxed);
+            std::uint8_t& flag = beside_fast[static_cast<std::size_t>(state.tetrahedron_node[block][a][l])];
+            std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed);
         }
     }
     return highest_lane(squared);
@@ -168,18 +168,18 @@ Real check_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Re
 /// Finds the tetrahedron of a block that deforms fastest, and the corner that moves fastest relative to corner 0 of
 /// this tetrahedron.
 Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
-    const Real8 rate_squared = rate_squared_of(state, block, parting_of(state, block));
+    const Real8 rate_squared = rate_squared_of(state, block, velocity_differences(state, block));
     Fastest fastest;
     for (std::size_t l = 0; l < element_lanes; ++l) {
         if (!(rate_squared[l] > fastest.rate_squared)) continue;
         fastest = {rate_squared[l], no_index, static_cast<Index>(block * element_lanes + l)};
         const Vec3 base = motion(state, static_cast<std::size_t>(state.tetrahedron_node[block][0][l]));
-        Real most = -1;
+        Real largest = -1;
         for (std::size_t a = 1; a < 4; ++a) {
             const Index node = state.tetrahedron_node[block][a][l];
-            const Real parting = (motion(state, static_cast<std::size_t>(node)) - base).squaredNorm();
-            if (parting > most) fastest.node = node;
-            most = std::max(most, parting);
+            const Real difference = (motion(state, static_cast<std::size_t>(node)) - base).squaredNorm();
+            if (difference > largest) fastest.node = node;
+            largest = std::max(largest, difference);
         }
     }
     return fastest;
@@ -216,14 +216,14 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     const Vec3 mean = sum / static_cast<Real>(end - begin);
     Fastest fastest;
     for (std::size_t n = begin; n < end; ++n)
-        fastest.look_at(
+        fastest.take_faster(
             {(motion(state, n) - mean).squaredNorm() / (altitude * altitude), static_cast<Index>(n), no_index});
     return fastest;
 }
 
 /// True if the tetrahedron with the smallest altitude could deform faster than `rate` [1/s]. Two nodes separate at most
 /// twice as fast as the fastest node moves relative to the first node of the body; hence the factor 4 between squares.
-bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
+bool may_deform_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     const Range blocks = state.body_node_blocks[body];
     const Vec3 first =
@@ -239,29 +239,29 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
 
 /// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. F of an element is the
 /// mean over its tetrahedra. Cheap tests come first, and the function ends as soon as a test shows that no element
-/// exceeds `rate`. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
-Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
-                      std::span<std::uint8_t> beside_fast) {
-    if (!parts_faster(executor, state, body, rate)) return 0;
-    const auto where_faster = [&](Real squared) { return squared > rate * rate ? std::sqrt(squared) : 0; };
+/// exceeds `rate`. `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
+Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate,
+                      Real max_relative_speed, std::span<std::uint8_t> beside_fast) {
+    if (!may_deform_faster(executor, state, body, rate)) return 0;
+    const auto rate_above = [&](Real squared) { return squared > rate * rate ? std::sqrt(squared) : 0; };
     const Range blocks = state.body_node_blocks[body];
     if (state.body_blocks.empty())
-        return where_faster(fastest_from_mean(state, blocks, state.body_min_altitude[body]).rate_squared);
+        return rate_above(fastest_from_mean(state, blocks, state.body_min_altitude[body]).rate_squared);
     if (!state.body_element_blocks.empty())
         std::fill(beside_fast.begin() + state.block_begin[static_cast<std::size_t>(blocks.begin)],
                   beside_fast.begin() + state.block_end[static_cast<std::size_t>(blocks.end - 1)], std::uint8_t{0});
-    const auto of = [&](Range rows, auto&& look_at) {
+    const auto highest_in = [&](Range rows, auto&& block_rate) {
         const auto begin = static_cast<std::size_t>(rows.begin);
         return highest_of(executor, static_cast<std::size_t>(rows.size()), element_blocks_per_job,
-                          [&](std::size_t row) { return look_at(begin + row); });
+                          [&](std::size_t row) { return block_rate(begin + row); });
     };
-    const Real of_tetrahedra = of(state.body_blocks[body], [&](std::size_t block) {
-        return check_tetrahedra(state, block, rate, part_at_most, beside_fast);
+    const Real tetrahedra_squared = highest_in(state.body_blocks[body], [&](std::size_t block) {
+        return check_tetrahedra(state, block, rate, max_relative_speed, beside_fast);
     });
-    if (state.body_element_blocks.empty() || of_tetrahedra == 0) return where_faster(of_tetrahedra);
-    const Real of_elements = of(state.body_element_blocks[body],
-                                [&](std::size_t block) { return check_elements(state, block, beside_fast); });
-    return where_faster(std::min(of_tetrahedra, of_elements));
+    if (state.body_element_blocks.empty() || tetrahedra_squared == 0) return rate_above(tetrahedra_squared);
+    const Real elements_squared = highest_in(
+        state.body_element_blocks[body], [&](std::size_t block) { return check_elements(state, block, beside_fast); });
+    return rate_above(std::min(tetrahedra_squared, elements_squared));
 }
 
 /// Finds the tetrahedron and the node to report for a body that deforms too fast: the tetrahedron with the highest
@@ -272,7 +272,7 @@ Fastest fastest_of(const CheckInputs& state, std::size_t body) {
     Fastest fastest;
     const Range tetrahedra = state.body_blocks[body];
     for (Index block = tetrahedra.begin; block < tetrahedra.end; ++block)
-        fastest.look_at(fastest_tetrahedron(state, static_cast<std::size_t>(block)));
+        fastest.take_faster(fastest_tetrahedron(state, static_cast<std::size_t>(block)));
     return fastest;
 }
 
@@ -295,22 +295,22 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     const auto greatest = [](std::span<const Real> squared) {
         Real highest = 0;
         bool finite = true;
-        for (const Real of_block : squared) {
-            finite &= of_block >= 0;
-            if (of_block > highest) highest = of_block;
+        for (const Real block_speed : squared) {
+            finite &= block_speed >= 0;
+            if (block_speed > highest) highest = block_speed;
         }
         return finite ? std::sqrt(highest) : std::numeric_limits<Real>::quiet_NaN();
     };
     StepVerdict verdict;
     beside_fast.resize(state.velocity_next.size());
-    const Real looked_for = max_strain_step / std::max(h, longest);
+    const Real tested_rate = max_strain_step / std::max(h, longest);
     // The relative speed of two nodes is at most twice the highest node speed in the frame of the body.
     const auto may_be_fast = [&](std::size_t body) {
         const Real altitude = state.body_min_altitude[body];
         return altitude > 0 && !state.ghosts.contain(static_cast<Index>(body)) &&
-               2 * speed.body_frame[body] > looked_for * altitude;
+               2 * speed.body_frame[body] > tested_rate * altitude;
     };
-    std::atomic<bool> to_look_at{false};
+    std::atomic<bool> any_suspect{false};
     parallel_for(executor, body_count, checked_bodies_per_job, [&](std::size_t begin, std::size_t end) {
         bool any = false;
         for (std::size_t body = begin; body < end; ++body) {
@@ -320,9 +320,9 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
             speed.body_frame[body] = greatest(speed.block_frame_squared.subspan(first, count));
             any |= std::isnan(speed.body[body]) || may_be_fast(body);
         }
-        if (any) to_look_at.store(true, std::memory_order_relaxed);
+        if (any) any_suspect.store(true, std::memory_order_relaxed);
     });
-    if (!to_look_at.load()) return verdict;
+    if (!any_suspect.load()) return verdict;
     for (std::size_t body = 0; body < body_count; ++body) {
         const Range blocks = state.body_node_blocks[body];
         if (std::isnan(speed.body[body])) {
@@ -334,7 +334,7 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         if (!may_be_fast(body) || blocks.size() == 0) continue;
         constexpr Real rounding = 1e-6;
         const Real rate =
-            deformation_rate(executor, state, body, looked_for, (2 + rounding) * speed.body_frame[body], beside_fast);
+            deformation_rate(executor, state, body, tested_rate, (2 + rounding) * speed.body_frame[body], beside_fast);
         if (rate > verdict.fastest.rate) verdict.fastest = {rate, static_cast<Index>(body)};
         // only the first fault of the step is reported
         if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;
@@ -355,8 +355,8 @@ StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, 
         if (!(state.body_min_altitude[body] > 0) || state.body_node_blocks[body].size() == 0 ||
             state.ghosts.contain(static_cast<Index>(body)))
             continue;
-        const Real of_body = deformation_rate(executor, state, body, rate, infinity, beside_fast);
-        if (of_body > fastest.rate) fastest = {of_body, static_cast<Index>(body)};
+        const Real body_rate = deformation_rate(executor, state, body, rate, infinity, beside_fast);
+        if (body_rate > fastest.rate) fastest = {body_rate, static_cast<Index>(body)};
     }
     return fastest;
 }
@@ -369,7 +369,7 @@ StepVerdict check_distance(Executor& executor, std::span<const Vec3> position, s
     };
     const auto is_too_far = [&](std::size_t body) {
         return body_nodes[body].size() > 0 && body_mean_edge[body] > 0 &&
-               spacing(body) > coarsest_place * body_mean_edge[body];
+               spacing(body) > coarsest_spacing * body_mean_edge[body];
     };
     if (!any_exceeds(executor, body_nodes.size(), checked_bodies_per_job, is_too_far)) return {};
     std::size_t body = 0;

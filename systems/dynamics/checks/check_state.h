@@ -101,11 +101,11 @@ struct SpeedOutputs {
     std::span<Real> block_squared, block_frame_squared;
     std::span<Real> body, body_frame;
 
-    static SpeedOutputs bind(const Binder& binder, NodeBlockTable& block, BodyTable& of_body) {
+    static SpeedOutputs bind(const Binder& binder, NodeBlockTable& block, BodyTable& body_table) {
         return {.block_squared = binder.write(block.max_speed_squared),
                 .block_frame_squared = binder.write(block.frame_speed_squared),
-                .body = binder.write(of_body.max_speed),
-                .body_frame = binder.write(of_body.frame_speed)};
+                .body = binder.write(body_table.max_speed),
+                .body_frame = binder.write(body_table.frame_speed)};
     }
 };
 
@@ -138,7 +138,7 @@ StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, 
 /// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. In a step, which
 /// lasts about as long as sound takes to cross an edge, motion slower than a millionth of the speed of sound would be
 /// lost to rounding if the spacing were coarser.
-inline constexpr Real coarsest_place = 1e-6;
+inline constexpr Real coarsest_spacing = 1e-6;
 
 /// Finds the first body that is too far from the origin for its size. One node per body is tested, because the size of
 /// a body is small compared with such distances.

@@ -49,11 +49,11 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
 /// may become positive and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
-    const Real8 left_over = Real8{} + infinity;
+    const Real8 unused = Real8{} + infinity;
     const Real8 squared_width = span > 0.0 ? volume * volume / span : Real8{};
-    const Real8 of_elements = load(rest_volume) > 0.0 ? squared_width : left_over;  // m^2
-    Real least = of_elements[0];
-    for (std::size_t l = 1; l < element_lanes; ++l) least = std::min(least, of_elements[l]);
+    const Real8 used_squared = load(rest_volume) > 0.0 ? squared_width : unused;  // m^2
+    Real least = used_squared[0];
+    for (std::size_t l = 1; l < element_lanes; ++l) least = std::min(least, used_squared[l]);
     return std::sqrt(least);
 }
 
@@ -67,12 +67,12 @@ struct Body {
     // measure_displacement.h [m]
     Real travel_base;
 
-    Body(const InversionInputs& of, Real step, Index body)
-        : inputs(of),
+    Body(const InversionInputs& all_inputs, Real step, Index body)
+        : inputs(all_inputs),
           h(step),
-          reach(step * of.body_frame_speed[body]),
-          travel_bound(of.body_travel[body] + reach),
-          travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
+          reach(step * all_inputs.body_frame_speed[body]),
+          travel_bound(all_inputs.body_travel[body] + reach),
+          travel_base(all_inputs.body_travel[body] - 2 * all_inputs.body_displacement[body]) {}
 
     void check(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> checks_left) const {
         // All blocks to be checked are prefetched before the first check, because they have left the cache since the
@@ -100,7 +100,7 @@ struct Body {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
             const Real8 volume = determinant(edges(inputs.tetrahedron_node[b], inputs.position));
             for (std::size_t l = 0; l < element_lanes; ++l)
-                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0) && is_judged(b, l)) return true;
+                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0) && matters(b, l)) return true;
         }
         return false;
     }
@@ -109,7 +109,7 @@ private:
     /// True for tetrahedra whose inversion matters. Inversion is harmless in tetrahedra that implicit elements cover
     /// (leeway above 1), because implicit elements never make a step unstable. It is also harmless in slivers, whose
     /// volume is negligible.
-    bool is_judged(std::size_t b, std::size_t l) const {
+    bool matters(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
     }
@@ -121,9 +121,9 @@ private:
             visit(b, std::min(b + blocks_at_once, end));
     }
 
-    static Real least(std::span<const Real> of, std::size_t begin, std::size_t end) {
+    static Real least(std::span<const Real> column, std::size_t begin, std::size_t end) {
         Real least = infinity;
-        const Real* const value = of.data();
+        const Real* const value = column.data();
 #pragma omp simd reduction(min : least)
         for (std::size_t i = begin; i < end; ++i) least = value[i] < least ? value[i] : least;
         return least;
@@ -134,9 +134,9 @@ private:
         if (checks_left > 0) {
             --checks_left;
         } else {
-            const Real safe = width(now, inputs.tetrahedron_volume[b]) / 2;
-            uninverted_until = travel_base + safe;
-            if (reach < safe) return;
+            const Real safe_distance = width(now, inputs.tetrahedron_volume[b]) / 2;
+            uninverted_until = travel_base + safe_distance;
+            if (reach < safe_distance) return;
             checks_left = checks_at_narrow - 1;
         }
         find_turned(b, now, part);
@@ -148,7 +148,7 @@ private:
         const Real8 before = determinant(now), after = determinant(now + h * motion);
         const unsigned turned = bits_of((load(inputs.tetrahedron_volume[b]) > 0.0) & (before > 0.0) & ~(after > 0.0));
         for_each_lane(turned, [&](std::size_t l) {
-            part.judged |= is_judged(b, l);
+            part.matters |= matters(b, l);
             if (part.count++ == 0) part.tetrahedron = static_cast<Index>(b * element_lanes + l);
         });
     }
@@ -161,22 +161,22 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     memory.part.clear();
     memory.job.clear();
     // With this capacity later steps allocate nothing, whichever bodies they check.
-    const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
-    memory.part.reserve(most);
-    memory.job.reserve(most + 1);
+    const std::size_t max_parts = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
+    memory.part.reserve(max_parts);
+    memory.job.reserve(max_parts + 1);
     Index open = blocks_per_part;  // number of blocks in the last job; begins full, so that the first part begins a job
     for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
         const Range blocks = inputs.body_blocks[b];
         if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;
         if (!inputs.body_rigid.empty() && inputs.body_rigid[b].size() > 0) continue;
         for (Index first = blocks.begin; first < blocks.end; first += blocks_per_part) {
-            const Range some{first, std::min(first + blocks_per_part, blocks.end)};
-            if (open + some.size() > blocks_per_part) {
+            const Range part_blocks{first, std::min(first + blocks_per_part, blocks.end)};
+            if (open + part_blocks.size() > blocks_per_part) {
                 memory.job.push_back(static_cast<Index>(memory.part.size()));
                 open = 0;
             }
-            open += some.size();
-            memory.part.push_back({b, some, infinity});
+            open += part_blocks.size();
+            memory.part.push_back({b, part_blocks, infinity});
         }
     }
     memory.job.push_back(static_cast<Index>(memory.part.size()));
@@ -186,16 +186,16 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
 void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPart> parts, Real& uninverted_until,
               Inversions& found) {
     const Index body = parts.front().body;
-    bool judged = false;
+    bool matters = false;
     uninverted_until = infinity;
     for (const InversionPart& part : parts) {
         uninverted_until = std::min(uninverted_until, part.uninverted_until);
         if (part.count == 0) continue;
-        judged |= part.judged;
+        matters |= part.matters;
         if (found.count == 0) found = {0, body, part.tetrahedron, false};
         found.count += part.count;
     }
-    if (judged) found.first |= !Body(inputs, h, body).has_inverted(inputs.body_blocks[body]);
+    if (matters) found.first |= !Body(inputs, h, body).has_inverted(inputs.body_blocks[body]);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ Real work_on(const ElementViscousImpulse& impulse, const LaneMat3<Real8>& rate) 
 Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::span<const Range> patches,
                        std::span<const ElementViscousImpulse> impulse, std::span<const std::uint8_t> viscous,
                        std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, Column<Real>& partial) {
-    const auto of_patch = [&](const Range& blocks) {
+    const auto patch_work = [&](const Range& blocks) {
         Real work = 0;
         const auto first = static_cast<std::size_t>(blocks.begin), last = static_cast<std::size_t>(blocks.end);
         for (std::size_t b = first; b < last; ++b) {
@@ -36,12 +36,12 @@ Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::s
         }
         return work;
     };
-    const auto of_patches = [&](std::size_t begin, std::size_t end) {
+    const auto work_of_range = [&](std::size_t begin, std::size_t end) {
         Real work = 0;
-        for (std::size_t p = begin; p < end; ++p) work += of_patch(patches[p]);
+        for (std::size_t p = begin; p < end; ++p) work += patch_work(patches[p]);
         return work;
     };
-    return reduce(executor, patches.size(), viscous_patches_per_job, partial, Real{0}, of_patches,
+    return reduce(executor, patches.size(), viscous_patches_per_job, partial, Real{0}, work_of_range,
                   [](Real a, Real b) { return a + b; });
 }
 

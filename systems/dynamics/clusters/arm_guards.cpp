@@ -15,7 +15,7 @@ namespace {
 constexpr Real modulus_at_rest = 0.01;
 
 /// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.
-bool are_in_one(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, std::span<const Real> inverse_mass) {
+bool share_chain(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, std::span<const Real> inverse_mass) {
     Index root = no_index;
     for (Index k = 0; k < nodes.count; ++k) {
         const Index node = nodes.node[k][lane];
@@ -50,7 +50,7 @@ void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Rea
         const BlockNodes nodes = elements.nodes_of(b);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Real volume = volume_of(nodes, l);
-            const bool acts = volume > 0 && are_in_one(chains, nodes, l, inverse_mass);
+            const bool acts = volume > 0 && share_chain(chains, nodes, l, inverse_mass);
             out.volume[row][l] = acts ? volume : 0;
             out.modulus[row][l] =
                 acts ? std::max(out.modulus[row][l], modulus_at_rest * elements.material_of(b).lame_lambda) : 0;

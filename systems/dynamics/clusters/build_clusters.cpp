@@ -44,7 +44,8 @@ void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeC
     for (auto c = first; c < static_cast<Index>(clusters.body.size()); ++c) {
         for (const Index n : nodes)
             if (clusters.cluster_of[n] == c) {
-                clusters.place[n] = static_cast<Index>(clusters.nodes.item.size()) - clusters.nodes.offset.back();
+                clusters.index_in_cluster[n] =
+                    static_cast<Index>(clusters.nodes.item.size()) - clusters.nodes.offset.back();
                 clusters.nodes.item.push_back(n);
             }
         clusters.nodes.offset.push_back(static_cast<Index>(clusters.nodes.item.size()));
@@ -72,14 +73,15 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
     }
     const Real beta = inertia_of_stiffness(inputs.body_cluster_step[body]);
     for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real m) {
-        const BlockNodes of = elements.nodes_of(b);
+        const BlockNodes block_nodes = elements.nodes_of(b);
         const Real weight = beta * m * elements.volume[b][l];
-        for_each_node(of, l, inputs.inverse_mass, [&](Index n, Index k) {
+        for_each_node(block_nodes, l, inputs.inverse_mass, [&](Index n, Index k) {
             Eigen::MatrixXd& matrix = A[static_cast<std::size_t>(clusters.cluster_of[n]) - first];
-            for_each_node(of, l, inputs.inverse_mass, [&](Index other, Index j) {
+            for_each_node(block_nodes, l, inputs.inverse_mass, [&](Index other, Index j) {
                 Real product = 0;
-                for (std::size_t i = 0; i < 3; ++i) product += of.gradient[k][i][l] * of.gradient[j][i][l];
-                matrix(clusters.place[n], clusters.place[other]) += weight * product;
+                for (std::size_t i = 0; i < 3; ++i)
+                    product += block_nodes.gradient[k][i][l] * block_nodes.gradient[j][i][l];
+                matrix(clusters.index_in_cluster[n], clusters.index_in_cluster[other]) += weight * product;
             });
         });
     });
@@ -102,7 +104,7 @@ void keep(const NodeClusters& before, std::size_t c, NodeClusters& clusters) {
     const std::span<const Index> nodes = before.nodes[c];
     for (std::size_t k = 0; k < nodes.size(); ++k) {
         clusters.cluster_of[nodes[k]] = static_cast<Index>(clusters.body.size());
-        clusters.place[nodes[k]] = static_cast<Index>(k);
+        clusters.index_in_cluster[nodes[k]] = static_cast<Index>(k);
         clusters.nodes.item.push_back(nodes[k]);
     }
     clusters.nodes.offset.push_back(static_cast<Index>(clusters.nodes.item.size()));
@@ -145,7 +147,7 @@ void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs
     if (std::ranges::none_of(inputs.body_cluster_step, [](Real step) { return step > 0; })) return;
     const std::size_t node_count = inputs.mass.size();
     clusters.cluster_of.assign(node_count, no_index);
-    clusters.place.assign(node_count, no_index);
+    clusters.index_in_cluster.assign(node_count, no_index);
     clusters.nodes.offset.push_back(0);
     UnionFind sets;
     sets.start(node_count);

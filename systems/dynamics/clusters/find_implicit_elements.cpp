@@ -26,19 +26,19 @@ std::vector<Index> nodes_of(const ElementInputs& elements, Range blocks) {
     Index last = 0, first = std::numeric_limits<Index>::max();
     const auto for_each_node = [&](auto&& visit) {
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
-            const BlockNodes of = elements.nodes_of(b);
-            for (Index k = 0; k < of.count; ++k) visit(of.node[k][l]);
+            const BlockNodes block_nodes = elements.nodes_of(b);
+            for (Index k = 0; k < block_nodes.count; ++k) visit(block_nodes.node[k][l]);
         });
     };
     for_each_node([&](Index n) {
         first = std::min(first, n);
         last = std::max(last, n);
     });
-    std::vector<std::uint8_t> has(static_cast<std::size_t>(std::max(last - first + 1, Index(0))));
-    for_each_node([&](Index n) { has[static_cast<std::size_t>(n - first)] = 1; });
+    std::vector<std::uint8_t> is_used(static_cast<std::size_t>(std::max(last - first + 1, Index(0))));
+    for_each_node([&](Index n) { is_used[static_cast<std::size_t>(n - first)] = 1; });
     std::vector<Index> nodes;
-    for (std::size_t n = 0; n < has.size(); ++n)
-        if (has[n]) nodes.push_back(first + static_cast<Index>(n));
+    for (std::size_t n = 0; n < is_used.size(); ++n)
+        if (is_used[n]) nodes.push_back(first + static_cast<Index>(n));
     return nodes;
 }
 
@@ -67,7 +67,7 @@ Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_of_stiffness(step) * modulus * volume;
 }
 
-constexpr Real most_volume = 0.75;  // largest fraction of the volume of a body that may be implicit
+constexpr Real max_volume_fraction = 0.75;  // largest fraction of the volume of a body that may be implicit
 
 }  // namespace
 
@@ -94,8 +94,9 @@ void ImplicitSearch::prepare() {
     marks_.resize(count);  // indexed by row of NodeTable minus first_node_; some rows may be unused
     sum_.resize(count);
     ratio_.resize(count);
-    for (std::vector<ElementLane>* column : {&stiffness_, &unit_, &step_, &measured_, &trace_}) column->resize(rows);
-    list_holds();
+    for (std::vector<ElementLane>* column : {&stiffness_, &unit_, &step_, &measured_step_, &measured_trace_})
+        column->resize(rows);
+    list_incidences();
     bounds_.stiffnesses(elements_, blocks_, position_, stiffness_);
     for (std::size_t row = 0; row < rows; ++row) {
         const std::size_t b = row + static_cast<std::size_t>(blocks_.begin);
@@ -105,24 +106,25 @@ void ImplicitSearch::prepare() {
     }
 }
 
-Real ImplicitSearch::need(std::size_t b, std::size_t l, Real step) const {
+Real ImplicitSearch::needed_fraction(std::size_t b, std::size_t l, Real step) const {
     return frequency_[row(b)][l] * step * step / (step_times_frequency * step_times_frequency);
 }
 
-void ImplicitSearch::list_holds() {
-    std::size_t most = 0;
+void ImplicitSearch::list_incidences() {
+    std::size_t max_incidences = 0;
     for (Index b = blocks_.begin; b < blocks_.end; ++b)
-        most += element_lanes * static_cast<std::size_t>(elements_.nodes_of(static_cast<std::size_t>(b)).count);
-    holds_.reserve(most);
+        max_incidences +=
+            element_lanes * static_cast<std::size_t>(elements_.nodes_of(static_cast<std::size_t>(b)).count);
+    incidences_.reserve(max_incidences);
     for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
-        const BlockNodes of = elements_.nodes_of(b);
-        for (Index k = 0; k < of.count; ++k)
+        const BlockNodes nodes = elements_.nodes_of(b);
+        for (Index k = 0; k < nodes.count; ++k)
             for (std::size_t l = 0; l < element_lanes; ++l) {
-                const Real x = of.gradient[k][0][l], y = of.gradient[k][1][l], z = of.gradient[k][2][l];
+                const Real x = nodes.gradient[k][0][l], y = nodes.gradient[k][1][l], z = nodes.gradient[k][2][l];
                 const Real size = x * x + y * y + z * z;
                 if (size > 0)
-                    holds_.push_back(
-                        {of.node[k][l] - first_node_, static_cast<Index>(row(b) * element_lanes + l), size});
+                    incidences_.push_back(
+                        {nodes.node[k][l] - first_node_, static_cast<Index>(row(b) * element_lanes + l), size});
             }
     }
 }
@@ -133,7 +135,8 @@ void ImplicitSearch::find_trace(std::vector<ElementLane>& trace) {
         ratio_[n] = mass > 0 ? sum_[n] / mass : 0;
     }
     std::ranges::fill(trace, ElementLane{});
-    for (const Hold& hold : holds_) of(trace, hold.element) += ratio_[static_cast<std::size_t>(hold.node)];
+    for (const Incidence& incidence : incidences_)
+        lane_value(trace, incidence.element) += ratio_[static_cast<std::size_t>(incidence.node)];
     for (std::size_t row = 0; row < trace.size(); ++row)
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Real share = out_.mass_share[row][l];
@@ -143,10 +146,10 @@ void ImplicitSearch::find_trace(std::vector<ElementLane>& trace) {
 
 void ImplicitSearch::measure() {
     bounds_.steps(elements_, blocks_, position_, mass_, stiffness_sum_, step_);
-    measured_ = step_;
+    measured_step_ = step_;
     for (const Index n : nodes_)
         sum_[static_cast<std::size_t>(n - first_node_)] = stiffness_sum_[static_cast<std::size_t>(n)];
-    find_trace(trace_);
+    find_trace(measured_trace_);
     exact_ = true;
 }
 
@@ -155,18 +158,19 @@ void ImplicitSearch::estimate() {
     for (std::size_t row = 0; row < unit_.size(); ++row)
         for (std::size_t l = 0; l < element_lanes; ++l) weight_[row][l] = out_.mass_share[row][l] * unit_[row][l];
     std::ranges::fill(sum_, Real(0));
-    for (const Hold& hold : holds_) sum_[static_cast<std::size_t>(hold.node)] += of(weight_, hold.element) * hold.size;
-    now_.resize(trace_.size());
-    find_trace(now_);
+    for (const Incidence& incidence : incidences_)
+        sum_[static_cast<std::size_t>(incidence.node)] += lane_value(weight_, incidence.element) * incidence.size;
+    present_trace_.resize(measured_trace_.size());
+    find_trace(present_trace_);
     for (std::size_t row = 0; row < step_.size(); ++row)
         for (std::size_t l = 0; l < element_lanes; ++l)
-            step_[row][l] = measured_[row][l] * std::sqrt(trace_[row][l] / now_[row][l]);
+            step_[row][l] = measured_step_[row][l] * std::sqrt(measured_trace_[row][l] / present_trace_[row][l]);
     exact_ = false;
 }
 
-void ImplicitSearch::mark(std::size_t b, std::size_t l, std::uint8_t with) {
+void ImplicitSearch::mark(std::size_t b, std::size_t l, std::uint8_t bits) {
     const BlockNodes nodes = elements_.nodes_of(b);
-    for (Index k = 0; k < nodes.count; ++k) marks_[static_cast<std::size_t>(nodes.node[k][l] - first_node_)] |= with;
+    for (Index k = 0; k < nodes.count; ++k) marks_[static_cast<std::size_t>(nodes.node[k][l] - first_node_)] |= bits;
 }
 
 std::uint8_t ImplicitSearch::marks_of(std::size_t b, std::size_t l) const {
@@ -177,43 +181,44 @@ std::uint8_t ImplicitSearch::marks_of(std::size_t b, std::size_t l) const {
         any |= marks;
         all &= marks;
     }
-    return static_cast<std::uint8_t>((any & some_starved) | (all & of_implicit));
+    return static_cast<std::uint8_t>((any & near_unstable) | (all & near_implicit));
 }
 
-void ImplicitSearch::give_up(Real step) {
-    constexpr Real less = 0.7;
+void ImplicitSearch::make_unstable_implicit(Real step) {
+    constexpr Real reduction = 0.7;
     std::ranges::fill(marks_, std::uint8_t(0));
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         if (share(b, l) == 0)
-            mark(b, l, of_implicit);
+            mark(b, l, near_implicit);
         else if (step_[row(b)][l] < step)
-            mark(b, l, some_starved);
+            mark(b, l, near_unstable);
     });
-    bool gave_up = false;
+    bool any_added = false;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         if (share(b, l) == 0) return;
         const std::uint8_t marks = marks_of(b, l);
-        if (!(marks & some_starved)) return;
-        if (need(b, l, step) < least_need_ && !(marks & of_implicit)) return;
+        if (!(marks & near_unstable)) return;
+        if (needed_fraction(b, l, step) < min_needed_fraction_ && !(marks & near_implicit)) return;
         share(b, l) = 0;
-        gave_up = true;
+        any_added = true;
     });
-    if (!gave_up) least_need_ *= less;
+    if (!any_added) min_needed_fraction_ *= reduction;
 }
 
 ImplicitShare ImplicitSearch::add_implicit(const ImplicitGoal& goal) {
-    Real volume = 0, given_up = 0, added = 0;  // volumes [m^3]; moment of inertia [kg m^2]
+    Real volume = 0, implicit_volume = 0, added = 0;  // volumes [m^3]; moment of inertia [kg m^2]
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         volume += elements_.volume[b][l];
         if (share(b, l) != 0) return;
-        given_up += elements_.volume[b][l];
+        implicit_volume += elements_.volume[b][l];
         Real& modulus = out_.modulus[row(b)][l];
         modulus = goal.headroom * stiffness_[row(b)][l];
         added += added_moment(goal.step, modulus, elements_.volume[b][l]);
     });
-    ImplicitShare result{.moment = added > 0 ? added / least_moment_ : 0, .too_many = given_up > most_volume * volume};
-    if (goal.most_nodes > 0 && !result.too_many)
-        result.too_many = cluster_sizes(elements_, blocks_, out_.modulus, goal.inverse_mass).largest > goal.most_nodes;
+    ImplicitShare result{.moment = added > 0 ? added / least_moment_ : 0,
+                         .too_many = implicit_volume > max_volume_fraction * volume};
+    if (goal.max_nodes > 0 && !result.too_many)
+        result.too_many = cluster_sizes(elements_, blocks_, out_.modulus, goal.inverse_mass).largest > goal.max_nodes;
     return result;
 }
 
@@ -227,17 +232,17 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
         const BlockNodes nodes = elements_.nodes_of(b);
         Real mass = 0;
         for (Index k = 0; k < nodes.count_in_lane(l); ++k) mass += mass_[static_cast<std::size_t>(nodes.node[k][l])];
-        demands.push_back({need(b, l, stable) * mass, elements_.volume[b][l]});
+        demands.push_back({needed_fraction(b, l, stable) * mass, elements_.volume[b][l]});
         sum.mass += demands.back().mass;
         sum.volume += demands.back().volume;
     });
-    Real excess = sum.mass, implicit = 0;  // lacking mass [kg]; volume [m^3]
-    for (const Index n : nodes_) excess -= mass_[static_cast<std::size_t>(n)];
-    if (!(excess > 0)) return 0;
+    Real missing_mass = sum.mass, implicit = 0;  // lacking mass [kg]; volume [m^3]
+    for (const Index n : nodes_) missing_mass -= mass_[static_cast<std::size_t>(n)];
+    if (!(missing_mass > 0)) return 0;
     // The elements that need the most mass for their volume become implicit first.
     std::ranges::sort(demands, [](const Demand& a, const Demand& b) { return a.mass * b.volume > b.mass * a.volume; });
-    for (std::size_t i = 0; i < demands.size() && excess > 0; ++i) {
-        excess -= demands[i].mass;
+    for (std::size_t i = 0; i < demands.size() && missing_mass > 0; ++i) {
+        missing_mass -= demands[i].mass;
         implicit += demands[i].volume;
     }
     return implicit / sum.volume;
@@ -250,37 +255,37 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     constexpr int rounds_of_estimates = 24;
     // Largest factor by which a mass share may change in one round. Without this limit, an element that stays unstable
     // would take the masses of its neighbours.
-    constexpr Real most_change = 4;
+    constexpr Real max_change = 4;
     start_mass_shares(elements_, blocks_, out_.mass_share);
     if (step_.empty()) prepare();
     std::ranges::fill(out_.modulus, ElementLane{});
-    least_need_ = 1;
+    min_needed_fraction_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         // An element that would be unstable even with the full masses of its nodes gets no mass share, which makes it
         // implicit.
-        if (need(b, l, goal.stable) > 1) share(b, l) = 0;
+        if (needed_fraction(b, l, goal.stable) > 1) share(b, l) = 0;
     });
     ImplicitShare found = add_implicit(goal);
-    bool found_enough = false;
+    bool all_stable = false;
     for (int round = 1;; ++round) {
         // Implicit elements stay implicit, so later rounds cannot reduce their volume, moment of inertia or clusters.
-        if (found.too_many || !(found.moment <= goal.most_moment)) return found;
-        if (round % rounds_of_estimates == 1 || found_enough)
+        if (found.too_many || !(found.moment <= goal.max_moment)) return found;
+        if (round % rounds_of_estimates == 1 || all_stable)
             measure();
         else
             estimate();
         Real shortest = infinity;  // s
         for_each_element(elements_, blocks_,
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
-        found_enough = !(shortest < goal.stable);
-        if (found_enough && exact_) break;
-        if (found_enough) continue;  // the next round confirms the estimate by the rigorous bound
+        all_stable = !(shortest < goal.stable);
+        if (all_stable && exact_) break;
+        if (all_stable) continue;  // the next round confirms the estimate by the rigorous bound
         if (round % rounds_of_sharing == 0) {
-            give_up(goal.stable);
+            make_unstable_implicit(goal.stable);
             found = add_implicit(goal);
         }
         for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-            share(b, l) *= std::clamp(goal.stable / step_[row(b)][l], 1 / most_change, most_change);
+            share(b, l) *= std::clamp(goal.stable / step_[row(b)][l], 1 / max_change, max_change);
         });
     }
     return found;
@@ -293,20 +298,20 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
     std::vector<ElementLane> step(out.mass_share.size());
     // When an element becomes implicit, explicit elements get its mass share. Their stable steps then change, so the
     // loop runs until no element becomes implicit.
-    for (bool gave_up = true; gave_up;) {
+    for (bool any_added = true; any_added;) {
         bounds.steps(elements, blocks, position, mass, stiffness_sum, step);
-        gave_up = false;
+        any_added = false;
         Real volume = 0, implicit = 0;  // m^3
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             Real& share = out.mass_share[b - first][l];
             if (step[b - first][l] < goal.stable) {
                 share = 0;
-                gave_up = true;
+                any_added = true;
             }
             volume += elements.volume[b][l];
             if (share == 0) implicit += elements.volume[b][l];
         });
-        if (implicit > most_volume * volume) return {.too_many = true};
+        if (implicit > max_volume_fraction * volume) return {.too_many = true};
     }
     Real added = 0;
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};

@@ -23,11 +23,11 @@ struct ImplicitGoal {
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms
     // (ElementBlockTable::mass_form), which are computed later, will allow longer steps.
     Real stable;
-    Real headroom;     // assumed divided by present stiffness of an implicit element, which may stiffen later
-    Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
+    Real headroom;    // assumed divided by present stiffness of an implicit element, which may stiffen later
+    Real max_moment;  // largest allowed ImplicitShare::moment; the search fails above it
     // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. A limit requires
     // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]), because clusters contain only moving nodes.
-    std::size_t most_nodes = 0;
+    std::size_t max_nodes = 0;
     std::span<const Real> inverse_mass{};
 };
 
@@ -66,29 +66,29 @@ public:
 private:
     /// Pair of an element and one of its nodes. Pairs are listed by block, node of the block and lane, so that sums
     /// have a fixed order.
-    struct Hold {
+    struct Incidence {
         // `node`: row of NodeTable minus first_node_. `element`: lane of the element, counted through all blocks of the
         // body.
         Index node, element;
         Real size;  // squared length of the shape gradient [1/m^2]
     };
-    // Bits of marks_: `some_starved` marks the nodes of elements that are unstable at the required step, `of_implicit`
-    // the nodes of implicit elements.
-    static constexpr std::uint8_t some_starved = 1, of_implicit = 2;
+    // Bits of marks_: `near_unstable` marks the nodes of elements that are unstable at the required step,
+    // `near_implicit` the nodes of implicit elements.
+    static constexpr std::uint8_t near_unstable = 1, near_implicit = 2;
 
     std::size_t row(std::size_t b) const { return b - static_cast<std::size_t>(blocks_.begin); }
     Real& share(std::size_t b, std::size_t l) const { return out_.mass_share[row(b)][l]; }
-    static Real& of(std::vector<ElementLane>& column, Index element) {
+    static Real& lane_value(std::vector<ElementLane>& column, Index element) {
         const auto e = static_cast<std::size_t>(element);
         return column[e / element_lanes][e % element_lanes];
     }
     /// Fraction of the masses of its nodes that an element needs to be stable at `step`. If the fraction is above 1, no
     /// mass share can make the element stable.
-    Real need(std::size_t b, std::size_t l, Real step) const;
+    Real needed_fraction(std::size_t b, std::size_t l, Real step) const;
     /// Computes the data of find() that do not depend on the step length. Mass shares must still be those of
     /// start_mass_shares(): unit_ is divided by them, which a share of 0 would prevent.
     void prepare();
-    void list_holds();
+    void list_incidences();
     /// measure() and estimate() compute the stable steps of all elements with their present mass shares. measure() uses
     /// the rigorous bound, estimate() the change of the trace since the last rigorous bound.
     void measure();
@@ -97,14 +97,14 @@ private:
     /// only on the shape. g_k is the shape gradient and m_k the element's part of the mass of node k. sum_ must contain
     /// the stiffness sums for the present mass shares.
     void find_trace(std::vector<ElementLane>& trace);
-    void mark(std::size_t b, std::size_t l, std::uint8_t with);
-    /// Marks of an element: some_starved if any of its nodes has this mark, and of_implicit if all of its nodes have
+    void mark(std::size_t b, std::size_t l, std::uint8_t bits);
+    /// Marks of an element: near_unstable if any of its nodes has this mark, and near_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes elements implicit that share a node with an element unstable at `step`, if their need() is at least
-    /// least_need_, or if all their nodes belong to implicit elements, because then they enlarge no cluster. Lowers
-    /// least_need_ if there is no such element.
-    void give_up(Real step);
+    /// Makes elements implicit that share a node with an element unstable at `step`, if their needed_fraction() is at
+    /// least min_needed_fraction_, or if all their nodes belong to implicit elements, because then they enlarge no
+    /// cluster. Lowers min_needed_fraction_ if there is no such element.
+    void make_unstable_implicit(Real step);
     /// Writes the assumed moduli of the implicit elements. Returns the moment of inertia that they add, and whether
     /// they have too much volume or form too large a cluster.
     ImplicitShare add_implicit(const ImplicitGoal& goal);
@@ -119,17 +119,17 @@ private:
     std::vector<Index> nodes_;  // nodes of all elements: rows of NodeTable, ascending
     Real least_moment_;         // least principal moment of inertia of the body [kg m^2]
     Index first_node_ = 0;
-    std::vector<Hold> holds_;
+    std::vector<Incidence> incidences_;
     std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
     std::vector<ElementLane> stiffness_;  // bound on the material Hessian in the shape `position_` [Pa]
     std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its initial mass share
-    // Values by element: stable step (step_), stable step at the last rigorous bound (measured_), trace at that bound
-    // (trace_), present trace (now_), stiffness weight (weight_).
-    std::vector<ElementLane> step_, measured_, trace_, now_, weight_;
+    // Values by element: stable step (step_), stable step at the last rigorous bound (measured_step_), trace at that
+    // bound (measured_trace_), present trace (present_trace_), stiffness weight (weight_).
+    std::vector<ElementLane> step_, measured_step_, measured_trace_, present_trace_, weight_;
     // For each node: sum of the stiffnesses of the elements at the node, and this sum divided by the mass of the node.
     std::vector<Real> sum_, ratio_;
     std::vector<std::uint8_t> marks_;  // by node
-    Real least_need_ = 1;
+    Real min_needed_fraction_ = 1;
     bool exact_ = false;  // true if step_ holds the rigorous bound, not an estimate
 };
 

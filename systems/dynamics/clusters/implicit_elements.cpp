@@ -14,14 +14,14 @@ Real least_moment_of(const Mat3& spread) {
     return along[0] + along[1];
 }
 
-void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
+void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real leeway_of_implicit,
                  std::span<ElementLane> leeway) {
     std::ranges::fill(leeway, ElementLane{{1, 1, 1, 1, 1, 1, 1, 1}});
     for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
         if (!(modulus[e / element_lanes][e % element_lanes] > 0)) continue;
         for (const Index t : tetrahedra[e]) {
             const auto at = static_cast<std::size_t>(t);
-            leeway[at / element_lanes][at % element_lanes] = of_implicit;
+            leeway[at / element_lanes][at % element_lanes] = leeway_of_implicit;
         }
     }
 }
@@ -30,9 +30,10 @@ void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::sp
     // Viscous time of implicit elements divided by the step h. Explicit damping at the rate d lowers the stability
     // limit to (omega h)^2 = 4 - 2 d h. Here d h = 0.1 (omega h)^2 is at most 0.1 * 1.8^2, so omega h may be up to
     // 1.83, which is above the 1.8 that clusters allow.
-    constexpr Real of_step = 0.1;
+    constexpr Real step_fraction = 0.1;
     for (std::size_t b = 0; b < modulus.size(); ++b)
-        viscous_time[b] = std::ranges::any_of(modulus[b].lane, [](Real of) { return of > 0; }) ? of_step * step : 0;
+        viscous_time[b] =
+            std::ranges::any_of(modulus[b].lane, [](Real value) { return value > 0; }) ? step_fraction * step : 0;
 }
 
 Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

@@ -10,9 +10,9 @@
 namespace skerry {
 
 /// Writes the leeway of each tetrahedron: a factor on the allowed change of the deformation gradient in a step. The
-/// factor is `of_implicit` for a tetrahedron that an implicit element covers, else 1. `tetrahedra` lists the tetrahedra
-/// that each element covers, lane by lane.
-void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
+/// factor is `leeway_of_implicit` for a tetrahedron that an implicit element covers, else 1. `tetrahedra` lists the
+/// tetrahedra that each element covers, lane by lane.
+void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real leeway_of_implicit,
                  std::span<ElementLane> leeway);
 
 /// Writes the viscous time of each block with implicit elements: viscosity over assumed modulus [s]. Other blocks get

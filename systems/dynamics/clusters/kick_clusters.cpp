@@ -23,8 +23,8 @@ Real8 lanes_at(const Real* from) {
 void store_at(const Real8& from, Real* to) {
     *reinterpret_cast<Real8InMemory*>(to) = from;
 }
-Real sum_of_lanes(const Real8& of) {
-    return ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
+Real sum_of_lanes(const Real8& lanes) {
+    return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
 }
 
 /// A vector for each node of a cluster, stored as three lists: all x, all y and all z components, by index of the node
@@ -33,7 +33,7 @@ struct ByComponent {
     Real* component[3];
 
     ByComponent(Real* first, std::size_t stride) : component{first, first + stride, first + 2 * stride} {}
-    Vec3 at(std::size_t place) const { return {component[0][place], component[1][place], component[2][place]}; }
+    Vec3 at(std::size_t index) const { return {component[0][index], component[1][index], component[2][index]}; }
 };
 
 /// Products of some matrix rows with the vectors of a ByComponent, one for each component. Lane l sums the columns l, l
@@ -51,21 +51,21 @@ template <std::size_t Rows, class Visit>
     (std::make_index_sequence<Rows>());
 }
 
-/// Multiplies `Rows` rows of a symmetric matrix, from row `place` on, by the vectors `kick` and returns the sums of the
-/// rows. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each entry also stands for the
+/// Multiplies `Rows` rows of a symmetric matrix, from row `first_row` on, by the vectors `kick` and returns the sums of
+/// the rows. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each entry also stands for the
 /// transposed entry: times the kick of its row, it is added to `sum` at its column. Thus only one triangle of the
 /// matrix is read, which matters because large matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
-                                                                 std::size_t place, std::size_t width,
+                                                                 std::size_t first_row, std::size_t width,
                                                                  const ByComponent& kick, const ByComponent& sum) {
-    const Real* const row = matrix + place * count;
+    const Real* const row = matrix + first_row * count;
     const auto [kick_x, kick_y, kick_z] = kick.component;
     const auto [sum_x, sum_y, sum_z] = sum.component;
     Real own_x[Rows], own_y[Rows], own_z[Rows];  // contiguous memory, so that one base address serves all rows
-    std::copy_n(kick_x + place, Rows, own_x);
-    std::copy_n(kick_y + place, Rows, own_y);
-    std::copy_n(kick_z + place, Rows, own_z);
+    std::copy_n(kick_x + first_row, Rows, own_x);
+    std::copy_n(kick_y + first_row, Rows, own_y);
+    std::copy_n(kick_z + first_row, Rows, own_z);
     RowSums<Rows> rows;
     for (std::size_t k = 0; k < width; k += tile) {
         const Real8 x = lanes_at(kick_x + k), y = lanes_at(kick_y + k), z = lanes_at(kick_z + k);
@@ -88,60 +88,61 @@ template <std::size_t Rows>
 
 /// Sums the lanes of each register and stores the sums one after the other.
 template <std::size_t Rows>
-[[gnu::always_inline]] inline void store_sums(const std::array<Real8, Rows>& of, Real* to) {
-    for_each_row<Rows>([&](auto r) __attribute__((always_inline)) { to[r] = sum_of_lanes(of[r]); });
+[[gnu::always_inline]] inline void store_sums(const std::array<Real8, Rows>& rows, Real* to) {
+    for_each_row<Rows>([&](auto r) __attribute__((always_inline)) { to[r] = sum_of_lanes(rows[r]); });
 }
-[[gnu::always_inline]] inline void store_sums(const std::array<Real8, tile>& of, Real* to) {
+[[gnu::always_inline]] inline void store_sums(const std::array<Real8, tile>& rows, Real* to) {
     const auto pairs = [](const Real8& a, const Real8& b) __attribute__((always_inline)) {
         return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
                __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
     };
-    const auto fours = [](const Real8& a, const Real8& b) __attribute__((always_inline)) {
+    const auto quads = [](const Real8& a, const Real8& b) __attribute__((always_inline)) {
         return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
                __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
     };
-    const Real8 low = fours(pairs(of[0], of[1]), pairs(of[2], of[3])),
-                high = fours(pairs(of[4], of[5]), pairs(of[6], of[7]));
+    const Real8 low = quads(pairs(rows[0], rows[1]), pairs(rows[2], rows[3])),
+                high = quads(pairs(rows[4], rows[5]), pairs(rows[6], rows[7]));
     store_at(__builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11) +
                  __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15),
              to);
 }
 
-/// Computes the sums of `Rows` rows, from row `place` on, of the complete diagonal tile that begins at row `first`. The
-/// tile contains both triangles, so its entries do not also stand for their transposed entries.
+/// Computes the sums of `Rows` rows, from row `first_row` on, of the complete diagonal tile that begins at row `first`.
+/// The tile contains both triangles, so its entries do not also stand for their transposed entries.
 template <std::size_t Rows>
-void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
+void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                       const ByComponent& kick, const ByComponent& sum) {
-    RowSums<Rows> rows = add_rows_and_columns<Rows>(matrix, count, place, first, kick, sum);
+    RowSums<Rows> rows = add_rows_and_columns<Rows>(matrix, count, first_row, first, kick, sum);
     const Real8 x = lanes_at(kick.component[0] + first), y = lanes_at(kick.component[1] + first),
                 z = lanes_at(kick.component[2] + first);
     for_each_row<Rows>([&](auto r) __attribute__((always_inline)) {
-        const Real8 entries = lanes_at(matrix + (place + r) * count + first);
+        const Real8 entries = lanes_at(matrix + (first_row + r) * count + first);
         rows.x[r] += entries * x;
         rows.y[r] += entries * y;
         rows.z[r] += entries * z;
     });
-    store_sums(rows.x, sum.component[0] + place);
-    store_sums(rows.y, sum.component[1] + place);
-    store_sums(rows.z, sum.component[2] + place);
+    store_sums(rows.x, sum.component[0] + first_row);
+    store_sums(rows.y, sum.component[1] + first_row);
+    store_sums(rows.z, sum.component[2] + first_row);
 }
 
-/// Computes the sums of `Rows` rows, from row `place` on, of the last, incomplete tile, which begins at row `first`.
+/// Computes the sums of `Rows` rows, from row `first_row` on, of the last, incomplete tile, which begins at row
+/// `first`.
 template <std::size_t Rows>
-void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
+void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                      const ByComponent& kick, const ByComponent& sum) {
-    const RowSums<Rows> rows = add_rows_and_columns<Rows>(matrix, count, place, first, kick, sum);
+    const RowSums<Rows> rows = add_rows_and_columns<Rows>(matrix, count, first_row, first, kick, sum);
     for_each_row<Rows>([&](auto r) __attribute__((always_inline)) {
-        const Real* const entry = matrix + (place + r) * count;
+        const Real* const entry = matrix + (first_row + r) * count;
         Real x = sum_of_lanes(rows.x[r]), y = sum_of_lanes(rows.y[r]), z = sum_of_lanes(rows.z[r]);
         for (std::size_t k = first; k < count; ++k) {
             x += entry[k] * kick.component[0][k];
             y += entry[k] * kick.component[1][k];
             z += entry[k] * kick.component[2][k];
         }
-        sum.component[0][place + r] = x;
-        sum.component[1][place + r] = y;
-        sum.component[2][place + r] = z;
+        sum.component[0][first_row + r] = x;
+        sum.component[1][first_row + r] = y;
+        sum.component[2][first_row + r] = z;
     });
 }
 
@@ -149,11 +150,11 @@ void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, s
 void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, const ByComponent& sum) {
     std::size_t first = 0;
     for (; first + tile <= count; first += tile)
-        for (std::size_t place = first; place < first + tile; place += rows_at_once)
-            add_rows_of_tile<rows_at_once>(matrix, count, first, place, kick, sum);
-    std::size_t place = first;
-    for (; place + 2 <= count; place += 2) add_rows_at_end<2>(matrix, count, first, place, kick, sum);
-    if (place < count) add_rows_at_end<1>(matrix, count, first, place, kick, sum);
+        for (std::size_t first_row = first; first_row < first + tile; first_row += rows_at_once)
+            add_rows_of_tile<rows_at_once>(matrix, count, first, first_row, kick, sum);
+    std::size_t first_row = first;
+    for (; first_row + 2 <= count; first_row += 2) add_rows_at_end<2>(matrix, count, first, first_row, kick, sum);
+    if (first_row < count) add_rows_at_end<1>(matrix, count, first, first_row, kick, sum);
 }
 
 /// Index of the tile of working memory at which cluster `c` begins. `begin`: index of the first node of the cluster in
@@ -162,7 +163,7 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }
-bool move_alike(std::span<const Index> nodes, std::span<const Vec3> velocity) {
+bool have_equal_velocity(std::span<const Index> nodes, std::span<const Vec3> velocity) {
     const Vec3& first = velocity[static_cast<std::size_t>(nodes.front())];
     return std::ranges::all_of(nodes, [&](Index n) { return velocity[static_cast<std::size_t>(n)] == first; });
 }
@@ -188,7 +189,7 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
             Real* const memory = work.data() + 6 * tile * tile_of(begin, c);
             const ByComponent kicks(memory, padded_count(count)),
                 sums(memory + 3 * padded_count(count), padded_count(count));
-            const bool flies = inputs.is_unstrained(c) && move_alike(nodes, velocity_next);
+            const bool moves_freely = inputs.is_unstrained(c) && have_equal_velocity(nodes, velocity_next);
             if (!known) {
                 for (std::size_t k = 0; k < count; ++k) {
                     const auto n = static_cast<std::size_t>(nodes[k]);
@@ -196,9 +197,9 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
                     kick[begin + k] = impulse;
                     for (std::size_t i = 0; i < 3; ++i) kicks.component[i][k] = impulse[static_cast<Index>(i)];
                 }
-                if (!flies) multiply(clusters.inverse.data() + clusters.first_entry[c], count, kicks, sums);
+                if (!moves_freely) multiply(clusters.inverse.data() + clusters.first_entry[c], count, kicks, sums);
             }
-            if (flies) continue;
+            if (moves_freely) continue;
             for (std::size_t k = 0; k < count; ++k) {
                 const auto n = static_cast<std::size_t>(nodes[k]);
                 velocity_next[n] = velocity[n] + sums.at(k);

@@ -27,7 +27,7 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
     const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
     std::size_t i = 0;
     for (; i + element_lanes <= to.size(); i += element_lanes) {
-        const auto at = [i](const Real* of) { return *reinterpret_cast<const Real8InMemory*>(of + i); };
+        const auto at = [i](const Real* values) { return *reinterpret_cast<const Real8InMemory*>(values + i); };
         *reinterpret_cast<Real8InMemory*>(&to[i]) =
             at(to.data()) + (factor.x() * at(x) + factor.y() * at(y) + factor.z() * at(z));
     }
@@ -38,32 +38,33 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
 /// is the shape gradient of an element at node k. The identity subtracts U (1/weight + G^T U)^-1 U^T with U = A^-1 G.
 /// With the Cholesky factorisation C C^T = 1/weight + G^T U, the subtracted matrix is W W^T with W = U C^-T. This
 /// product is bitwise symmetric in any order of summation.
-void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
+void add_to_inverse(const BlockNodes& block_nodes, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
-    for (Index k = 0; k < of.count && cluster == no_index; ++k) cluster = clusters.cluster(of.node[k][l]);
+    for (Index k = 0; k < block_nodes.count && cluster == no_index; ++k)
+        cluster = clusters.cluster(block_nodes.node[k][l]);
     if (cluster == no_index) return;
     const auto c = static_cast<std::size_t>(cluster);
     const std::size_t count = clusters.nodes[c].size();
     const auto for_each_node = [&](auto&& visit) {
-        for (Index k = 0; k < of.count; ++k) {
-            const auto n = static_cast<std::size_t>(of.node[k][l]);
-            const Vec3 g(of.gradient[k][0][l], of.gradient[k][1][l], of.gradient[k][2][l]);
-            if (inverse_mass[n] > 0 && !g.isZero(0)) visit(static_cast<std::size_t>(clusters.place[n]), g);
+        for (Index k = 0; k < block_nodes.count; ++k) {
+            const auto n = static_cast<std::size_t>(block_nodes.node[k][l]);
+            const Vec3 g(block_nodes.gradient[k][0][l], block_nodes.gradient[k][1][l], block_nodes.gradient[k][2][l]);
+            if (inverse_mass[n] > 0 && !g.isZero(0)) visit(static_cast<std::size_t>(clusters.index_in_cluster[n]), g);
         }
     };
     std::array<std::vector<Real>, 3> moved;  // columns of U, later overwritten by columns of W
     for (std::vector<Real>& component : moved) component.assign(count, 0);
-    for_each_node([&](std::size_t place, const Vec3& g) {
-        const std::span<const Real> row = clusters.row(cluster, static_cast<Index>(place));
+    for_each_node([&](std::size_t index, const Vec3& g) {
+        const std::span<const Real> row = clusters.row(cluster, static_cast<Index>(index));
         for (Eigen::Index component = 0; component < 3; ++component) {
             std::vector<Real>& to = moved[static_cast<std::size_t>(component)];
             for (std::size_t i = 0; i < count; ++i) to[i] += row[i] * g[component];
         }
     });
     Mat3 small = Mat3::Identity() / weight;
-    for_each_node([&](std::size_t place, const Vec3& g) {
-        small += Vec3(moved[0][place], moved[1][place], moved[2][place]) * g.transpose();
+    for_each_node([&](std::size_t index, const Vec3& g) {
+        small += Vec3(moved[0][index], moved[1][index], moved[2][index]) * g.transpose();
     });
     const Mat3 C = small.llt().matrixL();
     for (std::size_t i = 0; i < count; ++i) {

@@ -42,7 +42,7 @@ struct StiffenOutputs {
         binder.value(clusters.body);
         binder.value(clusters.first_entry);
         binder.value(clusters.cluster_of);
-        binder.value(clusters.place);
+        binder.value(clusters.index_in_cluster);
         binder.write(clusters.inverse);
         return {binder.write(element.implicit_modulus), clusters};
     }

@@ -196,8 +196,8 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
     SKERRY_CHECK(places.element.size() >= list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
     AppendedElements appended{{}, {}, places.element};
-    const auto lanes_of = [&](std::size_t place) {
-        return std::span<const Index>(appended.element).subspan(place, element_lanes);
+    const auto lanes_of = [&](std::size_t lane_index) {
+        return std::span<const Index>(appended.element).subspan(lane_index, element_lanes);
     };
     const std::size_t end_block = first_block + appended.element.size() / element_lanes;
     AnyTable(blocks).resize(end_block);
@@ -213,14 +213,14 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
     AnyTable(nodes).resize(end_row);
     RowOrder order(list.node.empty() ? 0 : static_cast<std::size_t>(std::ranges::max(list.node)) + 1);
     for (std::size_t block = first_block; block < end_block; ++block) {
-        const std::size_t place = (block - first_block) * element_lanes;
-        const std::span<const Index> lanes = lanes_of(place);
+        const std::size_t lane_index = (block - first_block) * element_lanes;
+        const std::span<const Index> lanes = lanes_of(lane_index);
         const Index row = blocks.first[block];
         const auto leader = static_cast<std::size_t>(lanes[0]);
         blocks.body[block] = body;
         blocks.material[block] = list.material[leader];
         blocks.part[block] = list.part[leader];
-        blocks.opens_patch[block] = places.opens_patch[place / element_lanes];
+        blocks.opens_patch[block] = places.opens_patch[lane_index / element_lanes];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
         // `rotation` and `rotation_next` must be equal: the step swaps the two columns, and laws without a corotational
         // frame write to neither of them.
@@ -338,19 +338,19 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
 }
 
 void truncate_patches(Index block_count, Index node_count, ElementPatches& patches) {
-    const auto of_patch = [](const Range& blocks) { return blocks.begin; };
-    const auto kept = static_cast<std::size_t>(std::ranges::lower_bound(patches.blocks, block_count, {}, of_patch) -
-                                               patches.blocks.begin());
+    const auto first_block_of = [](const Range& blocks) { return blocks.begin; };
+    const auto kept = static_cast<std::size_t>(
+        std::ranges::lower_bound(patches.blocks, block_count, {}, first_block_of) - patches.blocks.begin());
     const std::size_t slots = kept > 0 ? static_cast<std::size_t>(patches.slots[kept - 1].end) : 0;
     patches.blocks.resize(kept);
     patches.relaxed.resize(kept);
     if (!patches.viscous_impulse.empty()) patches.resize_viscous(static_cast<std::size_t>(block_count));
     patches.slots.resize(kept);
     patches.node.resize(slots);
-    Ragged<Index>& of_node = patches.slots_of_node;
-    if (static_cast<std::size_t>(node_count) < of_node.size())
-        of_node.offset.resize(static_cast<std::size_t>(node_count) + 1);
-    of_node.item.resize(slots);
+    Ragged<Index>& slots_of_node = patches.slots_of_node;
+    if (static_cast<std::size_t>(node_count) < slots_of_node.size())
+        slots_of_node.offset.resize(static_cast<std::size_t>(node_count) + 1);
+    slots_of_node.item.resize(slots);
 }
 
 }  // namespace skerry

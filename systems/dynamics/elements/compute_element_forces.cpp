@@ -124,7 +124,7 @@ struct Run {
 
     /// True for implicit elements so near to their rest shape that they have no viscosity. `square`: |F|^2, `J`: det F.
     template <class T>
-    static auto is_calm(const T& square, const T& J) {
+    static auto is_small_strain(const T& square, const T& J) {
         constexpr Real stretched = 6, pressed = 0.3;  // limits on |F|^2 and det F, which are 3 and 1 in the rest shape
         return (square < stretched) & (J > pressed);
     }
@@ -132,15 +132,15 @@ struct Run {
     /// True if the block has implicit elements, none of them is viscous, and none is nearly as stiff as assumed. This
     /// holds for most blocks in most steps.
     template <class Law>
-    [[gnu::always_inline]] bool rests_easy(const Law& law, std::size_t block,
-                                           const Parts<LaneMat3<KernelReal>>& F) const {
+    [[gnu::always_inline]] bool is_near_rest(const Law& law, std::size_t block,
+                                             const Parts<LaneMat3<KernelReal>>& F) const {
         bool any_implicit = false, easy = true;
 #pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
                              taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             const auto near_rest =
-                is_calm(square, J) & (quick_stiffness(law, material, square, J) <= near_stiffness * taken);
+                is_small_strain(square, J) & (quick_stiffness(law, material, square, J) <= near_stiffness * taken);
             easy &= all((taken <= 0.0) | near_rest);
             any_implicit |= !all(taken <= 0.0);
         }
@@ -153,13 +153,13 @@ struct Run {
                                Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const KernelReal of_modulus =
+            const KernelReal strain_modulus =
                 elements.viscous_time[block] * load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             viscosity[part] =
-                is_calm(inner_product(F[part], F[part]), determinant(F[part])) ? KernelReal{} : of_modulus;
+                is_small_strain(inner_product(F[part], F[part]), determinant(F[part])) ? KernelReal{} : strain_modulus;
             store_part(viscosity[part], lanes, part);
         }
-        return std::ranges::any_of(lanes.lane, [](Real of) { return of > 0; });
+        return std::ranges::any_of(lanes.lane, [](Real value) { return value > 0; });
     }
 
     /// True if an implicit element is strained so much that its stiffness must be computed accurately.
@@ -173,7 +173,7 @@ struct Run {
         return any;
     }
 
-    void note(std::size_t block, bool viscous, bool stiffening) const {
+    void record(std::size_t block, bool viscous, bool stiffening) const {
         if (!patches.viscous.empty()) patches.viscous[block] = viscous;
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
@@ -184,13 +184,13 @@ struct Run {
                             Parts<LaneMat3<KernelReal>>& Q) const {
         Parts<KernelReal> viscosity;
         const bool acts = viscosity_of_implicit(block, F, viscosity);
-        note(block, acts, is_stiffening(block, F));
+        record(block, acts, is_stiffening(block, F));
         if (!acts) return;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
-            const LaneMat3<KernelReal> of_rate = viscous_stress(viscosity[part], F[part], rate);
-            if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, block, part);
-            Q[part] = Q[part] + scale[part] * of_rate;
+            const LaneMat3<KernelReal> rate_stress = viscous_stress(viscosity[part], F[part], rate);
+            if (!patches.viscous_impulse.empty()) keep_impulse(rate_stress, block, part);
+            Q[part] = Q[part] + scale[part] * rate_stress;
         }
     }
 
@@ -244,9 +244,9 @@ struct Run {
         }
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
             // Without the copies gcc would keep F and Q in memory, because with_viscous_stress() takes their addresses,
-            // even when it is not called. It would also store intermediate results of the stress for rests_easy().
-            if (rests_easy(law, block, copy_of_parts(F)))
-                note(block, false, false);
+            // even when it is not called. It would also store intermediate results of the stress for is_near_rest().
+            if (is_near_rest(law, block, copy_of_parts(F)))
+                record(block, false, false);
             else
                 Q = copy_of_parts(
                     with_viscous_stress(*this, block, copy_of_parts(F), scale_of(block), copy_of_parts(Q)));
@@ -291,10 +291,10 @@ struct Run {
         Parts<LaneMat3<KernelReal>> F = run.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
             const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, relaxed);
-            const bool goes_on = block + 1 < run.end;
-            if (ahead && goes_on) F = run.fetch(block + 1);
+            const bool has_next = block + 1 < run.end;
+            if (ahead && has_next) F = run.fetch(block + 1);
             run.add(block, Q);
-            if (!ahead && goes_on) F = run.fetch(block + 1);
+            if (!ahead && has_next) F = run.fetch(block + 1);
         }
     });
     return run.dissipated_of(relaxed);

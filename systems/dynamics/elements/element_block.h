@@ -91,9 +91,9 @@ struct Corner {
 
 template <class Positions>
 [[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, Positions position) {
-    const Index* const of = node.lane + 4 * part;
-    return {{load_position(position + of[0]), load_position(position + of[1]), load_position(position + of[2]),
-             load_position(position + of[3])}};
+    const Index* const corner = node.lane + 4 * part;
+    return {{load_position(position + corner[0]), load_position(position + corner[1]),
+             load_position(position + corner[2]), load_position(position + corner[3])}};
 }
 
 /// Variant of load_corner for a block that contains the last node. Its position ends the array, and load_position()
@@ -129,9 +129,9 @@ template <class Part>
     } else {
         Lanes<Real, element_lanes> all[9];
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const LaneMat3<KernelReal> of = part_of_block(part);
-            const KernelReal entry[9] = {of.c0.x, of.c0.y, of.c0.z, of.c1.x, of.c1.y,
-                                         of.c1.z, of.c2.x, of.c2.y, of.c2.z};
+            const LaneMat3<KernelReal> gradient = part_of_block(part);
+            const KernelReal entry[9] = {gradient.c0.x, gradient.c0.y, gradient.c0.z, gradient.c1.x, gradient.c1.y,
+                                         gradient.c1.z, gradient.c2.x, gradient.c2.y, gradient.c2.z};
             for (std::size_t i = 0; i < 9; ++i) store_part(entry[i], all[i], part);
         }
         return {{load(all[0]), load(all[1]), load(all[2])},
@@ -231,11 +231,11 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
 /// Copies matrices for code that seldom runs. The original then stays in registers, and the compiler shares no
 /// intermediate results between uses of the original and of the copy.
 template <class T>
-[[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
+[[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& parts) {
     Parts<LaneMat3<T>> copy;
 #pragma GCC unroll 2
     for (std::size_t part = 0; part < kernel_parts; ++part) {
-        const LaneMat3<T>& a = of[part];
+        const LaneMat3<T>& a = parts[part];
         copy[part] = {{computed_here(a.c0.x), computed_here(a.c0.y), computed_here(a.c0.z)},
                       {computed_here(a.c1.x), computed_here(a.c1.y), computed_here(a.c1.z)},
                       {computed_here(a.c2.x), computed_here(a.c2.y), computed_here(a.c2.z)}};

@@ -16,23 +16,24 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) is true. The search for the
-/// corotational frame of a lane starts from the frame of the same lane in the previous block, because neighbours have
-/// similar rotations. The search therefore also runs for skipped blocks. Laws without a frame ignore the argument
+/// Calls visit(block, material, volume, F, frame) for every block for which is_requested(block) is true. The search for
+/// the corotational frame of a lane starts from the frame of the same lane in the previous block, because neighbours
+/// have similar rotations. The search therefore also runs for skipped blocks. Laws without a frame ignore the argument
 /// `frame`.
 template <class Ask, class Visit>
-void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
+void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& is_requested,
                        Visit&& visit) {
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const bool asked = asks(b);
-        if (!asked && !has_frame(elements.constants[static_cast<std::size_t>(elements.material[b])].model)) continue;
+        const bool requested = is_requested(b);
+        if (!requested && !has_frame(elements.constants[static_cast<std::size_t>(elements.material[b])].model))
+            continue;
         const MaterialConstants material = elements.material_of(b);
         const Real8 volume = load(elements.volume[b]);
         const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(b), position);
         if (has_frame(material.model)) extract_rotation(F, volume, q);
-        if (asked) visit(b, material, volume, F, rotation_of(q));
+        if (requested) visit(b, material, volume, F, rotation_of(q));
     }
 }
 
@@ -131,16 +132,16 @@ void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const 
                    });
 }
 
-void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
+void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> requested,
                     std::span<const Vec3> position, std::span<ElementFields> fields) {
-    SKERRY_CHECK(fields.size() >= asked.size() * element_lanes);
-    if (asked.empty()) return;
+    SKERRY_CHECK(fields.size() >= requested.size() * element_lanes);
+    if (requested.empty()) return;
     std::size_t next = 0;
-    const auto asks = [&](std::size_t b) {
-        return next < asked.size() && static_cast<std::size_t>(blocks.begin + asked[next]) == b;
+    const auto is_requested = [&](std::size_t b) {
+        return next < requested.size() && static_cast<std::size_t>(blocks.begin + requested[next]) == b;
     };
-    const Range up_to_last{blocks.begin, blocks.begin + asked.back() + 1};
-    for_each_block_of(elements, up_to_last, position, asks,
+    const Range through_last{blocks.begin, blocks.begin + requested.back() + 1};
+    for_each_block_of(elements, through_last, position, is_requested,
                       [&](std::size_t, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                           const LaneMat3<Real8>& R) {
                           const LaneMat3<Real8> P = stress_of(material, F, R), cauchy = cauchy_stress_of(volume, F, P),

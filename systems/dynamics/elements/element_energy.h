@@ -27,10 +27,10 @@ struct ElementFields {
     Mat3 strain;                         // Green strain
 };
 
-/// Writes the fields of the elements in some blocks of a range. `asked`: numbers of the blocks to evaluate, ascending,
-/// counted from blocks.begin. Block asked[i] is written to fields[8 i + lane]. The values do not depend on which other
-/// blocks are asked.
-void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
+/// Writes the fields of the elements in some blocks of a range. `requested`: numbers of the blocks to evaluate,
+/// ascending, counted from blocks.begin. Block requested[i] is written to fields[8 i + lane]. The values do not depend
+/// on which other blocks are requested.
+void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> requested,
                     std::span<const Vec3> position, std::span<ElementFields> fields);
 
 /// Writes Green's strain (F^T F - I) / 2 of each element to strain[8 (block - blocks.begin) + lane]; zero in lanes

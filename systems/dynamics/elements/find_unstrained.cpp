@@ -13,7 +13,7 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_job = 16;
-bool move_alike(std::span<const Vec3> velocity) {
+bool have_equal_velocity(std::span<const Vec3> velocity) {
     const Vec3& first = velocity.front();
     // The last node is compared first: it is far from the first node, so that rotation and vibration show at once.
     if (velocity.back() != first) return false;
@@ -62,7 +62,7 @@ bool is_unstrained(const UnstrainedInputs& inputs, Range blocks) {
 std::uint16_t steps_unstrained(const UnstrainedInputs& inputs, std::size_t body, std::uint16_t before) {
     const Range nodes = inputs.body_nodes[body], blocks = inputs.body_blocks[body];
     if ((!inputs.body_idle.empty() && inputs.body_idle[body]) || blocks.size() == 0 ||
-        !move_alike(rows_of(inputs.velocity, nodes)))
+        !have_equal_velocity(rows_of(inputs.velocity, nodes)))
         return 0;
     if (before > 1) return static_cast<std::uint16_t>(before - 1);
     return is_unstrained(inputs, blocks) ? unstrained_steps : std::uint16_t{0};

@@ -20,17 +20,19 @@ struct ElementCover {
 };
 
 /// Stress of each of the `count` tetrahedra of a body [Pa]: the sum of the means of the parts `whole`, `shear` and
-/// `volume` of the stress (ElementPart), each over the elements that cover the tetrahedron. `of_elements`: stress by
+/// `volume` of the stress (ElementPart), each over the elements that cover the tetrahedron. `element_values`: stress by
 /// lane of the blocks.
-std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
+std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> element_values,
+                                       std::size_t count);
 
 /// Strain of each of the `count` tetrahedra of a body: the mean over the elements that cover it. Elements with only the
-/// volumetric part of the stress do not count. `of_elements`: strain by lane of the blocks.
-std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
+/// volumetric part of the stress do not count. `element_values`: strain by lane of the blocks.
+std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> element_values,
+                                       std::size_t count);
 
 /// For each of the `count` tetrahedra of a body: mean of an element value over the elements that cover it. Elements
-/// with only the volumetric part of the stress do not count. `of_blocks`: values by block and lane.
-std::vector<Real> mean_of_tetrahedra(const ElementCover& cover, std::span<const ElementLane> of_blocks,
+/// with only the volumetric part of the stress do not count. `block_values`: values by block and lane.
+std::vector<Real> mean_of_tetrahedra(const ElementCover& cover, std::span<const ElementLane> block_values,
                                      std::size_t count);
 
 }  // namespace skerry

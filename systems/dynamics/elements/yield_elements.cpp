@@ -47,12 +47,12 @@ Flow flow_of(const MaterialConstants& material, const Real8& volume, const LaneM
     const auto column = [&](const Real8& ai, const Real8& bi, const Real8& ci) {
         return (x * ai) * a + (y * bi) * b + (z * ci) * c;
     };
-    const LaneMat3<Real8> of_flow{column(a.x, b.x, c.x), column(a.y, b.y, c.y), column(a.z, b.z, c.z)};
+    const LaneMat3<Real8> flow_inverse{column(a.x, b.x, c.x), column(a.y, b.y, c.y), column(a.z, b.z, c.z)};
     const auto masked = [&](const LaneVec3<Real8>& v, const Real8& i, const Real8& j, const Real8& k) {
         return LaneVec3<Real8>{flows ? v.x : i, flows ? v.y : j, flows ? v.z : k};
     };
-    flow.inverse = {masked(of_flow.c0, one, zero, zero), masked(of_flow.c1, zero, one, zero),
-                    masked(of_flow.c2, zero, zero, one)};
+    flow.inverse = {masked(flow_inverse.c0, one, zero, zero), masked(flow_inverse.c1, zero, one, zero),
+                    masked(flow_inverse.c2, zero, zero, one)};
     flow.dissipated = (limit + 0.5 * material.hardening * flow.strain) * flow.strain;
     return flow;
 }
@@ -151,12 +151,12 @@ void forget_flow(const ElementInputs& elements, Range blocks, std::span<const Ve
         LaneVec3<Real8>* const column[3] = {&M.c0, &M.c1, &M.c2};
         for (Index j = 0; j < 3; ++j) {
             const Real x = rotation(j, 0), y = rotation(j, 1), z = rotation(j, 2);
-            const LaneVec3<Real8> of_flow{over_det * (x * cof.c0.x + y * cof.c0.y + z * cof.c0.z),
-                                          over_det * (x * cof.c1.x + y * cof.c1.y + z * cof.c1.z),
-                                          over_det * (x * cof.c2.x + y * cof.c2.y + z * cof.c2.z)};
-            *column[j] = {strain > 0.0 ? of_flow.x : (j == 0 ? one : zero),
-                          strain > 0.0 ? of_flow.y : (j == 1 ? one : zero),
-                          strain > 0.0 ? of_flow.z : (j == 2 ? one : zero)};
+            const LaneVec3<Real8> flow_inverse{over_det * (x * cof.c0.x + y * cof.c0.y + z * cof.c0.z),
+                                               over_det * (x * cof.c1.x + y * cof.c1.y + z * cof.c1.z),
+                                               over_det * (x * cof.c2.x + y * cof.c2.y + z * cof.c2.z)};
+            *column[j] = {strain > 0.0 ? flow_inverse.x : (j == 0 ? one : zero),
+                          strain > 0.0 ? flow_inverse.y : (j == 1 ? one : zero),
+                          strain > 0.0 ? flow_inverse.z : (j == 2 ? one : zero)};
         }
         change_rest_shape(elements, block, M, state);
         state.plastic_strain[block] = {};

@@ -19,7 +19,7 @@ void BlockRows::multiply(std::span<const Vec3> x, std::span<Vec3> out) const {
     }
 }
 
-std::vector<Index> elimination_places(const std::vector<std::vector<Index>>& neighbours) {
+std::vector<Index> elimination_order(const std::vector<std::vector<Index>>& neighbours) {
     const auto count = static_cast<int>(neighbours.size());
     std::vector<Eigen::Triplet<double, int>> entry;
     for (int n = 0; n < count; ++n) {
@@ -30,9 +30,9 @@ std::vector<Index> elimination_places(const std::vector<std::vector<Index>>& nei
     pattern.setFromTriplets(entry.begin(), entry.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> node_at;
     Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower>(), node_at);
-    std::vector<Index> place(neighbours.size());
-    for (int k = 0; k < count; ++k) place[static_cast<std::size_t>(node_at.indices()[k])] = k;
-    return place;
+    std::vector<Index> order_index(neighbours.size());
+    for (int k = 0; k < count; ++k) order_index[static_cast<std::size_t>(node_at.indices()[k])] = k;
+    return order_index;
 }
 
 BlockCholesky::BlockCholesky(const BlockRows& pattern)

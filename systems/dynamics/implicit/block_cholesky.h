@@ -23,7 +23,7 @@ struct BlockRows {
 
 /// Index of each node in an elimination order with little fill-in (minimum degree). `neighbours` lists for each node
 /// all other nodes with which the node shares a block; each pair occurs in the lists of both nodes.
-std::vector<Index> elimination_places(const std::vector<std::vector<Index>>& neighbours);
+std::vector<Index> elimination_order(const std::vector<std::vector<Index>>& neighbours);
 
 /// Cholesky factorisation L L^T of a matrix A, row by row (up-looking: Davis, Direct Methods for Sparse Linear Systems,
 /// 2006, 4.7). The sparsity pattern is analysed once. Factoring other matrices with the same pattern allocates nothing.

@@ -12,7 +12,7 @@ namespace {
 
 /// 3x3 block of the stiffness matrix that couples two nodes of an element, per volume, from the parts of the tangent
 /// that only anisotropic laws have. `g`, `other`: gradients of the two nodes at rest.
-Mat3 further_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
+Mat3 anisotropic_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
     Mat3 block = g.dot(tangent.second_stress * other) * Mat3::Identity();
     for (const Mat3& dyad : tangent.dyads) block += (dyad * g) * (dyad * other).transpose();
     return block;
@@ -21,41 +21,41 @@ Mat3 further_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
 }  // namespace
 
 BodyElements::BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
-                           std::span<const Index> place)
+                           std::span<const Index> order_index)
     : first_(elements.first_node), gradient_(elements.gradient), volume_(elements.volume) {
-    for (const Index node : elements.node) place_.push_back(place[static_cast<std::size_t>(node)]);
-    std::size_t most = 0;
+    for (const Index node : elements.node) order_index_.push_back(order_index[static_cast<std::size_t>(node)]);
+    std::size_t max_nodes = 0;
     for (std::size_t e = 0; e < size(); ++e) {
         material_.push_back(part_of(constants[static_cast<std::size_t>(elements.material[e])], elements.part[e]));
-        any_bends_ |= material_.back().model != MaterialModel::linear;
+        any_nonlinear_ |= material_.back().model != MaterialModel::linear;
         Real sum = 0;
         for (const Vec3& gradient : nodes_of(e).gradient) sum += gradient.norm();
         strain_by_displacement_ = std::max(strain_by_displacement_, sum);
-        most = std::max(most, elements.nodes_of(e));
+        max_nodes = std::max(max_nodes, elements.nodes_of(e));
     }
-    turned_.resize(most);
+    turned_.resize(max_nodes);
 }
 
 BodyElements::Nodes BodyElements::nodes_of(std::size_t e) const {
     const std::size_t count = first_[e + 1] - first_[e];
-    return {std::span(place_).subspan(first_[e], count), std::span(gradient_).subspan(first_[e], count)};
+    return {std::span(order_index_).subspan(first_[e], count), std::span(gradient_).subspan(first_[e], count)};
 }
 
 Mat3 BodyElements::gradient_of(std::size_t e, const Displacements& displacement) const {
     const Nodes nodes = nodes_of(e);
-    const Vec3& first = displacement[nodes.place[0]];
+    const Vec3& first = displacement[nodes.order_index[0]];
     Mat3 change = Mat3::Zero();
-    for (std::size_t k = 1; k < nodes.place.size(); ++k)
-        change += (displacement[nodes.place[k]] - first) * nodes.gradient[k].transpose();
+    for (std::size_t k = 1; k < nodes.order_index.size(); ++k)
+        change += (displacement[nodes.order_index[k]] - first) * nodes.gradient[k].transpose();
     return change;
 }
 
 Real BodyElements::largest_strain(const Displacements& displacement) const {
     Real squared = 0;
     for (std::size_t e = 0; e < size(); ++e) {
-        const Real of_element = gradient_of(e, displacement).squaredNorm();
-        if (std::isnan(of_element)) return of_element;
-        squared = std::max(squared, of_element);
+        const Real squared_strain = gradient_of(e, displacement).squaredNorm();
+        if (std::isnan(squared_strain)) return squared_strain;
+        squared = std::max(squared, squared_strain);
     }
     return std::sqrt(squared);
 }
@@ -67,13 +67,13 @@ Real BodyElements::energy(const Displacements& displacement) const {
     return sum;
 }
 
-BodyElements::Misfit BodyElements::misfit(const Displacements& displacement) const {
-    Misfit sum{0, 0};
+BodyElements::EnergyDifference BodyElements::compare_energies(const Displacements& displacement) const {
+    EnergyDifference sum{0, 0};
     for (std::size_t e = 0; e < size(); ++e) {
         const Mat3 change = gradient_of(e, displacement), F = Mat3::Identity() + change;
-        const Real of_linear = volume_[e] * small_strain_energy(material_[e], change);
-        sum.linear += of_linear;
-        sum.off += std::abs(volume_[e] * energy_density(material_[e], F) - of_linear);
+        const Real linear = volume_[e] * small_strain_energy(material_[e], change);
+        sum.linear += linear;
+        sum.difference += std::abs(volume_[e] * energy_density(material_[e], F) - linear);
     }
     return sum;
 }
@@ -86,21 +86,21 @@ void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out
         // Sum over all nodes but the first, which gets the opposite sum because the gradients of an element add up to
         // zero.
         Vec3 others = Vec3::Zero();
-        for (std::size_t k = 1; k < nodes.place.size(); ++k) {
+        for (std::size_t k = 1; k < nodes.order_index.size(); ++k) {
             const Vec3 of_node = pull * nodes.gradient[k];
-            out[static_cast<std::size_t>(nodes.place[k])] += of_node;
+            out[static_cast<std::size_t>(nodes.order_index[k])] += of_node;
             others += of_node;
         }
-        out[static_cast<std::size_t>(nodes.place[0])] -= others;
+        out[static_cast<std::size_t>(nodes.order_index[0])] -= others;
     }
 }
 
 void BodyElements::find_blocks(const BlockRows& matrix) {
     for (std::size_t e = 0; e < size(); ++e) {
-        const std::span<const Index> place = nodes_of(e).place;
-        for (std::size_t k = 0; k < place.size(); ++k)
+        const std::span<const Index> order_index = nodes_of(e).order_index;
+        for (std::size_t k = 0; k < order_index.size(); ++k)
             for (std::size_t l = 0; l <= k; ++l) {
-                const auto [column, row] = std::minmax(place[k], place[l]);
+                const auto [column, row] = std::minmax(order_index[k], order_index[l]);
                 const auto first = matrix.column.begin() + matrix.offset[static_cast<std::size_t>(row)],
                            last = matrix.column.begin() + matrix.offset[static_cast<std::size_t>(row) + 1];
                 block_.push_back(static_cast<Index>(std::lower_bound(first, last, column) - matrix.column.begin()));
@@ -116,29 +116,30 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         const Tangent tangent = skerry::tangent(material_[e], Mat3::Identity() + gradient_of(e, displacement));
         const Real weight = scale * volume_[e];
         // The tangent maps dF to dP in the principal axes of F. `normal` couples the diagonal entries. An off-diagonal
-        // entry of dP is `even` times the same entry of dF plus `crossed` times the transposed entry of dF.
+        // entry of dP is `diagonal_part` times the same entry of dF plus `crossed` times the transposed entry of dF.
         const Mat3 normal = weight * tangent.normal;
-        Mat3 even = Mat3::Zero(), crossed = Mat3::Zero();
+        Mat3 diagonal_part = Mat3::Zero(), crossed = Mat3::Zero();
         for (Index i = 0; i < 3; ++i) {
-            even(i, i) = normal(i, i);
+            diagonal_part(i, i) = normal(i, i);
             for (Index j = 0; j < 3; ++j) {
                 if (i == j) continue;
                 const Index pair = 3 - i - j;
-                even(i, j) = weight * (tangent.flip[pair] + tangent.twist[pair]) / 2;
+                diagonal_part(i, j) = weight * (tangent.flip[pair] + tangent.twist[pair]) / 2;
                 crossed(i, j) = weight * (tangent.flip[pair] - tangent.twist[pair]) / 2;
             }
         }
-        for (std::size_t k = 0; k < nodes.place.size(); ++k) turned_[k] = tangent.right.transpose() * nodes.gradient[k];
-        for (std::size_t k = 0; k < nodes.place.size(); ++k)
+        for (std::size_t k = 0; k < nodes.order_index.size(); ++k)
+            turned_[k] = tangent.right.transpose() * nodes.gradient[k];
+        for (std::size_t k = 0; k < nodes.order_index.size(); ++k)
             for (std::size_t l = 0; l <= k; ++l) {
                 const Vec3 &g = turned_[k], &other = turned_[l];
                 Mat3 block = normal.cwiseProduct(g * other.transpose()) + crossed.cwiseProduct(other * g.transpose());
-                block.diagonal() = even * g.cwiseProduct(other);
+                block.diagonal() = diagonal_part * g.cwiseProduct(other);
                 block = tangent.left * block * tangent.left.transpose();
                 if (tangent.is_anisotropic)
-                    block += weight * further_block(tangent, nodes.gradient[k], nodes.gradient[l]);
+                    block += weight * anisotropic_block(tangent, nodes.gradient[k], nodes.gradient[l]);
                 Mat3& to = matrix.block[static_cast<std::size_t>(block_[at++])];
-                if (nodes.place[k] >= nodes.place[l])
+                if (nodes.order_index[k] >= nodes.order_index[l])
                     to += block;
                 else
                     to += block.transpose();

@@ -17,29 +17,30 @@ namespace skerry {
 /// elimination order.
 class Displacements {
 public:
-    Displacements(std::span<const Vec3> by_place) : by_place_(by_place) {}
-    Displacements(const std::vector<Vec3>& by_place) : by_place_(by_place) {}
+    Displacements(std::span<const Vec3> by_order) : by_order_(by_order) {}
+    Displacements(const std::vector<Vec3>& by_order) : by_order_(by_order) {}
     Displacements(std::span<const Vec3> by_node, std::span<const Index> node_at)
-        : by_place_(by_node), node_at_(node_at) {}
-    const Vec3& operator[](Index place) const {
-        const auto k = static_cast<std::size_t>(place);
-        return by_place_[node_at_.empty() ? k : static_cast<std::size_t>(node_at_[k])];
+        : by_order_(by_node), node_at_(node_at) {}
+    const Vec3& operator[](Index order_index) const {
+        const auto k = static_cast<std::size_t>(order_index);
+        return by_order_[node_at_.empty() ? k : static_cast<std::size_t>(node_at_[k])];
     }
 
 private:
-    std::span<const Vec3> by_place_;
+    std::span<const Vec3> by_order_;
     std::span<const Index> node_at_{};
 };
 
 class BodyElements {
 public:
     BodyElements() = default;
-    /// `constants`: material constants by row of MaterialTable; `place`: index of each node in the elimination order.
+    /// `constants`: material constants by row of MaterialTable; `order_index`: index of each node in the elimination
+    /// order.
     BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
-                 std::span<const Index> place);
+                 std::span<const Index> order_index);
 
     /// True if some element has a nonlinear material law.
-    bool any_bends() const { return any_bends_; }
+    bool any_nonlinear() const { return any_nonlinear_; }
     /// Largest Frobenius norm |F - 1| of all elements, with the deformation gradient F.
     Real largest_strain(const Displacements& displacement) const;
     /// Lipschitz constant of largest_strain(): bound on its change, divided by the largest change of a node
@@ -47,12 +48,12 @@ public:
     Real strain_by_displacement() const { return strain_by_displacement_; }
     /// Elastic energy of all elements at the given displacements [J].
     Real energy(const Displacements& displacement) const;
-    struct Misfit {
-        // `linear`: energy of all elements by linear elasticity [J]. `off`: sum over the elements of the absolute
-        // difference between the energy by the material law and the energy by linear elasticity [J].
-        Real linear, off;
+    struct EnergyDifference {
+        // `linear`: energy of all elements by linear elasticity [J]. `difference`: sum over the elements of the
+        // absolute difference between the energy by the material law and the energy by linear elasticity [J].
+        Real linear, difference;
     };
-    Misfit misfit(const Displacements& displacement) const;
+    EnergyDifference compare_energies(const Displacements& displacement) const;
     /// Computes out = dU/dx, the gradient of the elastic energy U, by index of the node in the elimination order [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
     /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy U to `matrix` [N/m]. Negative eigenvalues
@@ -62,7 +63,7 @@ public:
 
 private:
     struct Nodes {
-        std::span<const Index> place;
+        std::span<const Index> order_index;
         std::span<const Vec3> gradient;
     };
     std::size_t size() const { return volume_.size(); }
@@ -70,13 +71,13 @@ private:
     Mat3 gradient_of(std::size_t e, const Displacements& displacement) const;
     void find_blocks(const BlockRows& matrix);
 
-    std::vector<std::size_t> first_{0};  // start of each element in place_ and gradient_; elements + 1 entries
-    std::vector<Index> place_;
+    std::vector<std::size_t> first_{0};  // start of each element in order_index_ and gradient_; elements + 1 entries
+    std::vector<Index> order_index_;
     std::vector<Vec3> gradient_;  // shape gradient at each node of each element [1/m]
     std::vector<Real> volume_;    // [m^3]
     // Material constants of each element, reduced to the part of the stress (ElementPart) that the element exerts.
     std::vector<MaterialConstants> material_;
-    bool any_bends_ = false;
+    bool any_nonlinear_ = false;
     Real strain_by_displacement_ = 0;
     // For each element and each pair of its nodes: index of the matrix block that couples both nodes.
     std::vector<Index> block_;

@@ -12,25 +12,26 @@ namespace skerry {
 
 bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                           std::size_t r, Real h, Real theta, StiffBody& stiff, std::span<Vec3> out) {
-    const OfBody of(bodies, stiff, r);
+    const BodyRows body(bodies, stiff, r);
     LargeStep& step = stiff.large_step;
-    step.resize(of.count);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
-    for (std::size_t n = 0; n < of.count; ++n) step.carried[of.place(n)] = displacement[n];
-    stiff.stand_in(step.carried);
+    step.resize(body.count);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement), velocity = body.rows(bodies.velocity);
+    for (std::size_t n = 0; n < body.count; ++n) step.carried[body.order_index(n)] = displacement[n];
+    stiff.set_shape(step.carried);
     const Real within = theta * h;
     const Mat3 to_mesh = bodies.turn(r).transpose();
     step.angular_momentum = to_mesh * spins.kicked(r);
     // Coriolis forces rotate the node velocities by -2 h times the angular velocity of the frame. They are applied as
     // an exact rotation, which adds no energy.
-    const Mat3 against = rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
-    for (std::size_t n = 0; n < of.count; ++n) step.before[of.place(n)] = against * velocity[n];
-    stiff.take_momenta(step.before);
+    const Mat3 coriolis_rotation =
+        rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
+    for (std::size_t n = 0; n < body.count; ++n) step.before[body.order_index(n)] = coriolis_rotation * velocity[n];
+    stiff.remove_momenta(step.before);
     step.velocity = step.before;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
         step.impulse[k] = stiff.mass(k) * step.before[k];
-        if (!loads.load.empty()) step.impulse[k] += within * (to_mesh * loads.load[of.first_node + n]);
+        if (!loads.load.empty()) step.impulse[k] += within * (to_mesh * loads.load[body.first_node + n]);
     }
     if (!solve_large_step(inertia_of(bodies, r, within), within, stiff)) return false;
     std::ranges::copy(step.velocity, out.begin());
@@ -40,21 +41,21 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 namespace {
 
 /// Removes rigid motion from the velocities and displacements at the end of the step, and writes the moments, axes and
-/// strain flag of the new shape. Returns `taken` minus the kinetic energy of the deformation at the end, plus the
-/// decrease of the spin energy and of the elastic energy [J]. `taken` must contain the kinetic energy of the
+/// strain flag of the new shape. Returns `energy` minus the kinetic energy of the deformation at the end, plus the
+/// decrease of the spin energy and of the elastic energy [J]. `energy` must contain the kinetic energy of the
 /// deformation at the start.
-Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real taken,
+Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real energy,
                   StiffBody& stiff, const ImplicitStrains& out) {
-    const OfBody of(bodies, stiff, r);
-    const std::span<Vec3> next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement);
+    const BodyRows body(bodies, stiff, r);
+    const std::span<Vec3> next = body.rows(out.velocity_next), displacement_next = body.rows(out.displacement_next);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement);
     const Mat3 from_mesh = bodies.turn(r), to_mesh = from_mesh.transpose();
     LargeStep& step = stiff.large_step;
     const bool was_large = bodies.large[r] != 0;
-    const Mat3 turned = stiff.turn_to_own_frame(displacement_next);
+    const Mat3 turned = stiff.rotate_to_own_frame(displacement_next);
     const Vec3 momentum = spins.after(r);
     const bool is_large =
-        is_large_after(was_large, displacement_next, turned.transpose() * (to_mesh * momentum), of, stiff);
+        is_large_after(was_large, displacement_next, turned.transpose() * (to_mesh * momentum), body, stiff);
     out.large_next[r] = is_large;
     follow_shape(displacement_next, is_large, from_mesh * turned, stiff, out.moments_next[r], out.axes_next[r],
                  out.rotation_shaped[r]);
@@ -62,15 +63,15 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     // else the motion of the rest shape.
     for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
     if (is_large) {
-        step.before.resize(of.count);
-        for (std::size_t n = 0; n < of.count; ++n) step.before[of.place(n)] = next[n];
-        stiff.stand_in({displacement_next, stiff.nodes()});
-        stiff.take_momenta(step.before);
-        for (std::size_t n = 0; n < of.count; ++n) next[n] = step.before[of.place(n)];
+        step.before.resize(body.count);
+        for (std::size_t n = 0; n < body.count; ++n) step.before[body.order_index(n)] = next[n];
+        stiff.set_shape({displacement_next, stiff.nodes()});
+        stiff.remove_momenta(step.before);
+        for (std::size_t n = 0; n < body.count; ++n) next[n] = step.before[body.order_index(n)];
     } else {
-        stiff.take_rigid_motion(next);
+        stiff.remove_rigid_motion(next);
     }
-    for (std::size_t n = 0; n < of.count; ++n) taken -= stiff.mass(of.place(n)) / 2 * next[n].squaredNorm();
+    for (std::size_t n = 0; n < body.count; ++n) energy -= stiff.mass(body.order_index(n)) / 2 * next[n].squaredNorm();
     // The spin energy is L.omega / 2. At the end of the step omega follows from the moments of inertia of the new shape
     // and the computed rotation, so the difference includes the energy error of this rotation
     // (docs/methods/rigid_bodies.md 2).
@@ -78,47 +79,47 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
         turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
     const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),
                spin_after = spin_of(turned_for_step, out.moments_next[r], momentum);
-    taken += momentum.dot(spin_before - spin_after) / 2;
-    return taken + stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
+    energy += momentum.dot(spin_before - spin_after) / 2;
+    return energy + stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
 }
 
 }  // namespace
 
 Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out) {
-    const OfBody of(bodies, stiff, r);
-    const std::span<Vec3> next = of.rows(out.velocity_next);
-    const std::span<const Vec3> velocity = of.rows(bodies.velocity), contact = of.rows(out.contact_impulse);
+    const BodyRows body(bodies, stiff, r);
+    const std::span<Vec3> next = body.rows(out.velocity_next);
+    const std::span<const Vec3> velocity = body.rows(bodies.velocity), contact = body.rows(out.contact_impulse);
     const Mat3 to_mesh = bodies.turn(r).transpose();
     LargeStep& step = stiff.large_step;
     const bool newton = stiff.is_tangent();
-    Real taken = 0;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
+    Real energy = 0;
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
         const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
         next[n] = before + (during - before) / theta;
-        // `taken`: reported work of contacts and loads, plus the kinetic energy of the deformation at the start of the
+        // `energy`: reported work of contacts and loads, plus the kinetic energy of the deformation at the start of the
         // step [J].
-        taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
+        energy += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
         if (!loads.load.empty()) {
-            const Vec3 load = to_mesh * loads.load[of.first_node + n];
-            taken += h * load.dot(during - (next[n] - velocity[n]) / 2) + (loads.kick - h) * load.dot(velocity[n]);
+            const Vec3 load = to_mesh * loads.load[body.first_node + n];
+            energy += h * load.dot(during - (next[n] - velocity[n]) / 2) + (loads.kick - h) * load.dot(velocity[n]);
         }
-        taken += stiff.mass(k) / 2 * velocity[n].squaredNorm();
+        energy += stiff.mass(k) / 2 * velocity[n].squaredNorm();
     }
-    return end_in_shape(bodies, spins, r, h, taken, stiff, out);
+    return end_in_shape(bodies, spins, r, h, energy, stiff, out);
 }
 
 Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, StiffBody& stiff,
                   const ImplicitStrains& out) {
-    const OfBody of(bodies, stiff, r);
+    const BodyRows body(bodies, stiff, r);
     Real kinetic = 0;
-    for (std::size_t n = 0; n < of.count; ++n)
-        kinetic += stiff.mass(of.place(n)) / 2 * of.rows(out.velocity_next)[n].squaredNorm();
+    for (std::size_t n = 0; n < body.count; ++n)
+        kinetic += stiff.mass(body.order_index(n)) / 2 * body.rows(out.velocity_next)[n].squaredNorm();
     // Growth of the linear elastic energy. The damped energy of the step already contains its negative; end_in_shape()
     // subtracts the growth of the energy by the material laws instead.
-    const Real linear = stiff.elastic_energy(of.rows(out.displacement_next), false) -
-                        stiff.elastic_energy(of.rows(bodies.displacement), false);
+    const Real linear = stiff.elastic_energy(body.rows(out.displacement_next), false) -
+                        stiff.elastic_energy(body.rows(bodies.displacement), false);
     return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);
 }
 

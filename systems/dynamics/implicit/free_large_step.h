@@ -2,7 +2,7 @@
 // and node velocities have no momentum and no angular momentum in this frame (docs/methods/implicit_bodies.md 8).
 #pragma once
 
-#include "systems/dynamics/implicit/of_body.h"
+#include "systems/dynamics/implicit/body_rows.h"
 
 namespace skerry {
 

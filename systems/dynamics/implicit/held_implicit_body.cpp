@@ -14,25 +14,27 @@ namespace {
 /// some of the nodes.
 struct HeldNodes {
     const ImplicitBodies& bodies;
-    const LedFrame& frame;
+    const HeldFrame& frame;
     Vec3 rest_center;
     std::size_t first_node;
 
-    HeldNodes(const ImplicitBodies& of, const LedFrame& led, std::size_t r)
-        : bodies(of),
-          frame(led),
-          rest_center(of.rest_center[r]),
-          first_node(static_cast<std::size_t>(of.nodes(r).begin)) {}
+    HeldNodes(const ImplicitBodies& implicit_bodies, const HeldFrame& held_frame, std::size_t r)
+        : bodies(implicit_bodies),
+          frame(held_frame),
+          rest_center(implicit_bodies.rest_center[r]),
+          first_node(static_cast<std::size_t>(implicit_bodies.nodes(r).begin)) {}
 
     bool held(std::size_t n) const { return !(bodies.inverse_mass[first_node + n] > 0); }
     Vec3 arm(std::size_t n) const { return bodies.rest_position[first_node + n] - rest_center; }
     /// Prescribed velocity of a held node, in the frame of the mesh at the end of the step [m/s].
-    Vec3 led(std::size_t n) const { return frame.turn.transpose() * bodies.node_velocity[first_node + n]; }
+    Vec3 prescribed_velocity(std::size_t n) const {
+        return frame.turn.transpose() * bodies.node_velocity[first_node + n];
+    }
 };
 
 }  // namespace
 
-LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : is_still(true), shift(Vec3::Zero()) {
+HeldFrame::HeldFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : is_still(true), shift(Vec3::Zero()) {
     turn_start = turn = bodies.turn(r);
     across = Mat3::Identity();
     if (bodies.asleep(r)) return;
@@ -49,33 +51,33 @@ namespace {
 
 /// True if a step with the given velocities leads to large strain. `velocity`: by index in the elimination order, in
 /// the frame of the mesh at the end of the step.
-bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec3> displacement,
+bool becomes_large(const HeldNodes& nodes, const BodyRows& body, std::span<const Vec3> displacement,
                    std::span<const Vec3> velocity, Real h, StiffBody& stiff) {
-    if (!stiff.elements().any_bends()) return false;
+    if (!stiff.elements().any_nonlinear()) return false;
     std::vector<Vec3>& at_end = stiff.large_step.within;
-    at_end.resize(of.count);
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        at_end[k] =
-            nodes.frame.carried(nodes.arm(n), displacement[n]) + h * (nodes.held(n) ? nodes.led(n) : velocity[k]);
+    at_end.resize(body.count);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
+        at_end[k] = nodes.frame.carried(nodes.arm(n), displacement[n]) +
+                    h * (nodes.held(n) ? nodes.prescribed_velocity(n) : velocity[k]);
     }
-    return stiff.becomes_large_in_places(at_end, Vec3::Zero());
+    return stiff.becomes_large_in_order(at_end, Vec3::Zero());
 }
 
 /// Computes the node velocities of a step at large strain by Newton's method, in the frame of the mesh at the end of
 /// the step, by index in the elimination order. `outer_force(n)`: force on node n in this frame [N]. Returns false if
 /// Newton's method fails.
-bool kick_large(const HeldNodes& nodes, const OfBody& of, std::size_t r, Real within, auto&& outer_force,
+bool kick_large(const HeldNodes& nodes, const BodyRows& body, std::size_t r, Real within, auto&& outer_force,
                 StiffBody& stiff, std::span<Vec3> out) {
     LargeStep& step = stiff.large_step;
-    step.resize(of.count);
-    const std::span<const Vec3> displacement = of.rows(nodes.bodies.displacement),
-                                velocity = of.rows(nodes.bodies.velocity);
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
+    step.resize(body.count);
+    const std::span<const Vec3> displacement = body.rows(nodes.bodies.displacement),
+                                velocity = body.rows(nodes.bodies.velocity);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
         const Vec3 before = nodes.frame.across * velocity[n];
         step.carried[k] = nodes.frame.carried(nodes.arm(n), displacement[n]);
-        step.velocity[k] = nodes.held(n) ? nodes.led(n) : before;
+        step.velocity[k] = nodes.held(n) ? nodes.prescribed_velocity(n) : before;
         step.impulse[k] = stiff.mass(k) * before + within * outer_force(n);
     }
     if (!solve_large_step(inertia_of(nodes.bodies, r, within), within, stiff)) return false;
@@ -87,58 +89,58 @@ bool kick_large(const HeldNodes& nodes, const OfBody& of, std::size_t r, Real wi
 
 void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
                     StiffBody& stiff, const ImplicitKicks& out) {
-    const OfBody of(bodies, stiff, r);
-    const LedFrame frame(bodies, r, h);
+    const BodyRows body(bodies, stiff, r);
+    const HeldFrame frame(bodies, r, h);
     const HeldNodes nodes(bodies, frame, r);
-    const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force),
-                          next = of.rows(out.velocity_next);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
+    const std::span<Vec3> impulse = body.rows(out.impulse), force = body.rows(out.elastic_force),
+                          next = body.rows(out.velocity_next);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement), velocity = body.rows(bodies.velocity);
     const auto outer_force = [&](std::size_t n) {
-        Vec3 outer = stiff.mass(of.place(n)) * loads.gravity;
-        if (!loads.load.empty()) outer += loads.load[of.first_node + n];
+        Vec3 outer = stiff.mass(body.order_index(n)) * loads.gravity;
+        if (!loads.load.empty()) outer += loads.load[body.first_node + n];
         return Vec3(frame.turn.transpose() * outer);
     };
     // `force`: elastic force of the step if free nodes do not move in the world, (1 - theta) times the force at the
     // start of the step plus theta times the force at the end. Both forces are equal unless `carried` is true: the
     // frame or a held node moves.
     bool carried = !frame.is_still;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        impulse[of.place(n)] = displacement[n];
-        carried |= nodes.held(n) && !bodies.node_velocity[of.first_node + n].isZero(0);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        impulse[body.order_index(n)] = displacement[n];
+        carried |= nodes.held(n) && !bodies.node_velocity[body.first_node + n].isZero(0);
     }
     bool large = bodies.large[r] != 0, sound = true;
     if (!large) {
         stiff.elastic_forces(impulse, force);
         if (carried) {
-            for (std::size_t n = 0; n < of.count; ++n) {
-                Vec3& at_end = impulse[of.place(n)];
+            for (std::size_t n = 0; n < body.count; ++n) {
+                Vec3& at_end = impulse[body.order_index(n)];
                 at_end = frame.carried(nodes.arm(n), displacement[n]);
-                if (nodes.held(n)) at_end += h * nodes.led(n);
+                if (nodes.held(n)) at_end += h * nodes.prescribed_velocity(n);
             }
             // `next` temporarily holds forces, by index in the elimination order
             stiff.elastic_forces(impulse, next);
-            for (std::size_t k = 0; k < of.count; ++k)
+            for (std::size_t k = 0; k < body.count; ++k)
                 force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
         }
-        for (std::size_t n = 0; n < of.count; ++n) {
-            const std::size_t k = of.place(n);
+        for (std::size_t n = 0; n < body.count; ++n) {
+            const std::size_t k = body.order_index(n);
             impulse[k] = stiff.mass(k) * (frame.across * velocity[n]) + theta * h * (outer_force(n) - force[k]);
         }
         sound = make_factor(bodies, r, h, theta, stiff);
         if (sound) stiff.respond(impulse);
-        large = sound && becomes_large(nodes, of, displacement, impulse, h, stiff);
+        large = sound && becomes_large(nodes, body, displacement, impulse, h, stiff);
     }
-    if (large) sound = kick_large(nodes, of, r, theta * h, outer_force, stiff, impulse);
+    if (large) sound = kick_large(nodes, body, r, theta * h, outer_force, stiff, impulse);
     if (!sound)  // velocities of NaN make the engine refuse the step
         std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
-    for (std::size_t n = 0; n < of.count; ++n) {
+    for (std::size_t n = 0; n < body.count; ++n) {
         if (nodes.held(n)) {
-            next[n] = frame.turn_start.transpose() * bodies.node_velocity[of.first_node + n];
+            next[n] = frame.turn_start.transpose() * bodies.node_velocity[body.first_node + n];
             continue;
         }
-        const Vec3& in_end = impulse[of.place(n)];
+        const Vec3& in_end = impulse[body.order_index(n)];
         next[n] = frame.across.transpose() * in_end;
-        out.node_velocity_next[of.first_node + n] = frame.turn * in_end;
+        out.node_velocity_next[body.first_node + n] = frame.turn * in_end;
     }
 }
 
@@ -148,115 +150,119 @@ namespace {
 /// free nodes follow from the motion of these nodes, forces on held nodes from the material laws. These forces do not
 /// add up to zero exactly, because Newton's method leaves a residual and the material laws do not see the motion by
 /// contacts. The missing force is divided equally among the held nodes.
-void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia, Real theta, Real within,
+void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
     LargeStep& step = stiff.large_step;
     const Mat3 to_mesh = nodes.frame.turn.transpose();
-    for (std::size_t n = 0; n < of.count; ++n) step.within[of.place(n)] = step.carried[of.place(n)] + within * next[n];
+    for (std::size_t n = 0; n < body.count; ++n)
+        step.within[body.order_index(n)] = step.carried[body.order_index(n)] + within * next[n];
     stiff.elements().forces(step.within, force);
-    Vec3 lacking = Vec3::Zero();
+    Vec3 missing = Vec3::Zero();
     Real held = 0;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
         held += nodes.held(n);
         if (!nodes.held(n))
             force[k] = (step.impulse[k] - inertia * stiff.mass(k) * next[n] + theta * (to_mesh * contact[n])) / within;
-        lacking -= force[k];
+        missing -= force[k];
     }
-    for (std::size_t n = 0; n < of.count; ++n)
-        if (nodes.held(n)) force[of.place(n)] += lacking / held;
+    for (std::size_t n = 0; n < body.count; ++n)
+        if (nodes.held(n)) force[body.order_index(n)] += missing / held;
 }
 
 }  // namespace
 
 Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out) {
-    const OfBody of(bodies, stiff, r);
-    const LedFrame frame(bodies, r, h);
+    const BodyRows body(bodies, stiff, r);
+    const HeldFrame frame(bodies, r, h);
     const HeldNodes nodes(bodies, frame, r);
-    const std::span<Vec3> impulse = of.rows(out.impulse), rate = of.rows(out.force_rate),
-                          next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
-                                force = of.rows(out.elastic_force), contact = of.rows(out.contact_impulse);
+    const std::span<Vec3> impulse = body.rows(out.impulse), rate = body.rows(out.force_rate),
+                          next = body.rows(out.velocity_next), displacement_next = body.rows(out.displacement_next);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement), velocity = body.rows(bodies.velocity),
+                                force = body.rows(out.elastic_force), contact = body.rows(out.contact_impulse);
     const Mat3 to_mesh = frame.turn.transpose();
     out.hold_moment[r] = Vec3::Zero();
     // The velocities of the step refer to the frame of the mesh at the end of the step.
-    const bool touched = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
-    if (touched) {
-        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = theta * (to_mesh * contact[n]);
+    const bool any_contact = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
+    if (any_contact) {
+        for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = theta * (to_mesh * contact[n]);
         stiff.respond(impulse);
     }
-    for (std::size_t n = 0; n < of.count; ++n) {
-        next[n] = nodes.held(n) && !bodies.asleep(r) ? nodes.led(n) : Vec3(frame.across * next[n]);
-        if (touched) next[n] += impulse[of.place(n)];
+    for (std::size_t n = 0; n < body.count; ++n) {
+        next[n] = nodes.held(n) && !bodies.asleep(r) ? nodes.prescribed_velocity(n) : Vec3(frame.across * next[n]);
+        if (any_contact) next[n] += impulse[body.order_index(n)];
         displacement_next[n] = frame.carried(nodes.arm(n), displacement[n]) + h * next[n];
     }
     if (bodies.asleep(r)) return 0;
     // The elastic forces have a moment about the centre, with the lever arms of the deformed shape. The attachment
     // balances it with hold_moment.
     const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
-               is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), of, stiff);
+               is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), body, stiff);
     const bool large = newton || was_large || is_large;
     out.large_next[r] = is_large;
     if (newton) {
-        forces_of_large_step(nodes, of, inertia_of(bodies, r, theta * h), theta, theta * h, next, contact, stiff, rate);
+        forces_of_large_step(nodes, body, inertia_of(bodies, r, theta * h), theta, theta * h, next, contact, stiff,
+                             rate);
     } else {
-        for (std::size_t n = 0; n < of.count; ++n)
-            impulse[of.place(n)] = nodes.held(n) ? Vec3(Vec3::Zero()) : Vec3(next[n]);
+        for (std::size_t n = 0; n < body.count; ++n)
+            impulse[body.order_index(n)] = nodes.held(n) ? Vec3(Vec3::Zero()) : Vec3(next[n]);
         stiff.elastic_forces(impulse, rate);
-        for (std::size_t k = 0; k < of.count; ++k) rate[k] = force[k] + theta * h * rate[k];
+        for (std::size_t k = 0; k < body.count; ++k) rate[k] = force[k] + theta * h * rate[k];
     }
     Vec3 moment = Vec3::Zero();
-    Real taken = 0;  // damped energy [J]
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        const Vec3 &of_mesh = rate[k], pull = frame.turn * of_mesh;
-        const Vec3 place = nodes.arm(n) + displacement[n];
-        moment += (frame.turn_start * place).cross(pull);
+    Real damped = 0;  // damped energy [J]
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
+        const Vec3 &mesh_force = rate[k], world_force = frame.turn * mesh_force;
+        const Vec3 arm = nodes.arm(n) + displacement[n];
+        moment += (frame.turn_start * arm).cross(world_force);
         // Subtracts the work of the attachment, which rotates the node positions against the elastic forces. The
         // elastic forces add up to zero, so the translation of the frame does no work. At large strain the work of the
         // elastic forces is added, and their energy is subtracted below.
         if (large)
-            taken += h * next[n].dot(of_mesh);
+            damped += h * next[n].dot(mesh_force);
         else if (!frame.is_still)
-            taken += of_mesh.dot(place - frame.across * place);
+            damped += mesh_force.dot(arm - frame.across * arm);
         // Force on a held node over the complete step, reported as a force that acts for the time `kick`.
-        if (Vec3& force_on_held = out.force[of.first_node + n]; nodes.held(n))
-            force_on_held = h / kick * (force_on_held - pull);
+        if (Vec3& force_on_held = out.force[body.first_node + n]; nodes.held(n))
+            force_on_held = h / kick * (force_on_held - world_force);
     }
     out.hold_moment[r] = -h * moment;
     // Adds the energy losses: (theta - 1/2) (dw.M dw + du.K du) and the material damping. dw and du are the changes of
     // velocity and displacement in the step, M the masses and K the stiffness. At large strain the decrease of the
     // elastic energy replaces the term du.K du.
     if (large) {
-        taken += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
+        damped += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
     } else {
-        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement_next[n] - displacement[n];
+        for (std::size_t n = 0; n < body.count; ++n)
+            impulse[body.order_index(n)] = displacement_next[n] - displacement[n];
         stiff.elastic_forces(impulse, rate);
     }
     const Real lossy = theta - 0.5, damping = bodies.damping(r);
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        if (!large) taken += lossy * impulse[k].dot(rate[k]);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
+        if (!large) damped += lossy * impulse[k].dot(rate[k]);
         if (nodes.held(n)) continue;
         const Vec3 before = frame.across * velocity[n], during = next[n], change = (during - before) / theta;
-        taken += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());
+        damped += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());
         // The reported work of contacts uses the mean of the velocities `before` and `during`, while the losses above
         // assume `during`. The difference is added here.
-        taken += (to_mesh * contact[n]).dot(before - during) / 2;
+        damped += (to_mesh * contact[n]).dot(before - during) / 2;
         next[n] = before + change;
     }
-    return taken;
+    return damped;
 }
 
 void drift_held_body(const ImplicitBodies& bodies, std::size_t r, Real seconds, std::span<Vec3> displacement_next,
                      std::span<Vec3> velocity_next) {
-    const LedFrame frame(bodies, r, seconds);
+    const HeldFrame frame(bodies, r, seconds);
     const HeldNodes nodes(bodies, frame, r);
     const auto first = static_cast<std::size_t>(bodies.rows(r).begin);
     for (std::size_t n = 0; n < static_cast<std::size_t>(bodies.rows(r).size()); ++n) {
-        velocity_next[first + n] = nodes.held(n) ? nodes.led(n) : Vec3(frame.across * bodies.velocity[first + n]);
+        velocity_next[first + n] =
+            nodes.held(n) ? nodes.prescribed_velocity(n) : Vec3(frame.across * bodies.velocity[first + n]);
         displacement_next[first + n] =
             frame.carried(nodes.arm(n), bodies.displacement[first + n]) + seconds * velocity_next[first + n];
     }

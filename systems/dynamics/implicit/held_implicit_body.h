@@ -2,19 +2,19 @@
 // nodes include this motion (docs/methods/implicit_bodies.md 7).
 #pragma once
 
-#include "systems/dynamics/implicit/of_body.h"
+#include "systems/dynamics/implicit/body_rows.h"
 
 namespace skerry {
 
 /// Prescribed motion of the mesh frame of a held body in this step.
-struct LedFrame {
+struct HeldFrame {
     bool is_still;    // true if the frame does not move in this step
     Mat3 turn_start;  // rotation from the frame of the mesh to the world at the start of the step
     Mat3 turn;        // rotation from the frame of the mesh to the world at the end of the step
     Mat3 across;      // rotation from the frame at the start to the frame at the end of the step
     Vec3 shift;       // centre at the start minus centre at the end, in the frame at the end [m]
 
-    LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h);
+    HeldFrame(const ImplicitBodies& bodies, std::size_t r, Real h);
 
     /// Displacement of a node that does not move in the world, in the frame at the end of the step [m]. `displacement`:
     /// in the frame at the start [m]. `arm`: rest position of the node relative to the centre [m].

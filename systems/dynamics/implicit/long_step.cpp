@@ -20,37 +20,38 @@ Real time_at_end(const LongStep& step, const ImplicitTimes& times) {
 bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                      const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                      std::span<Vec3> impulse) {
-    const OfBody of(bodies, stiff, r);
+    const BodyRows body(bodies, stiff, r);
     LongStep& step = stiff.long_step;
-    step.resize(of.count);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
-                                left = of.rows(bodies.left);
-    for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement[n];
-    of.stiff.elastic_forces(impulse, elastic_force);
-    add_up_impulses(bodies, loads, r, times.theta * times.length, elastic_force, of, impulse);
+    step.resize(body.count);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement), velocity = body.rows(bodies.velocity),
+                                left = body.rows(bodies.left);
+    for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = displacement[n];
+    body.stiff.elastic_forces(impulse, elastic_force);
+    add_up_impulses(bodies, loads, r, times.theta * times.length, elastic_force, body, impulse);
     if (!make_factor(bodies, r, times.length, times.theta, stiff)) return false;
     step.elastic = 0;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
         step.start[n] = displacement[n];
         step.start_velocity[n] = velocity[n];
         step.start_force[n] = elastic_force[k];
         step.impulse[n] = impulse[k];
-        step.left[n] = left[n] / times.length;
+        step.assumed_velocity[n] = left[n] / times.length;
         step.elastic += displacement[n].dot(elastic_force[k]) / 2;
     }
-    of.stiff.respond(impulse);
-    for (std::size_t n = 0; n < of.count; ++n) step.free[n] = impulse[of.place(n)];
-    std::ranges::fill(step.answer, Vec3::Zero());
-    std::ranges::fill(step.left_impulse, Vec3::Zero());
+    body.stiff.respond(impulse);
+    for (std::size_t n = 0; n < body.count; ++n) step.free_velocity[n] = impulse[body.order_index(n)];
+    std::ranges::fill(step.contact_velocity, Vec3::Zero());
+    std::ranges::fill(step.assumed_impulse, Vec3::Zero());
     if (std::ranges::all_of(left, [](const Vec3& of_node) { return of_node.isZero(0); })) return true;
     // Impulses that cause the velocities step.left: the product A step.left with the matrix A of the long step.
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
-    for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = step.left[n];
-    of.stiff.elastic_forces(impulse, elastic_force);
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        step.left_impulse[n] = inertia * stiff.mass(k) * step.left[n] + within * within * elastic_force[k];
+    for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = step.assumed_velocity[n];
+    body.stiff.elastic_forces(impulse, elastic_force);
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const std::size_t k = body.order_index(n);
+        step.assumed_impulse[n] =
+            inertia * stiff.mass(k) * step.assumed_velocity[n] + within * within * elastic_force[k];
     }
     return true;
 }
@@ -70,14 +71,15 @@ bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads,
     } else if (!make_factor(bodies, r, times.length, times.theta, stiff)) {
         return false;
     }
-    const OfBody of(bodies, stiff, r);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement);
-    const Real time = time_at_end(step, times), still_left = 1 - time / times.length;
+    const BodyRows body(bodies, stiff, r);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement);
+    const Real time = time_at_end(step, times), remaining_share = 1 - time / times.length;
     step.weight = time / times.h;
     step.rests = false;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const Vec3 during = step.free[n] + step.answer[n] + still_left * step.left[n];
-        out[of.place(n)] = (time * during - (displacement[n] - step.start[n])) / times.h;
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const Vec3 during =
+            step.free_velocity[n] + step.contact_velocity[n] + remaining_share * step.assumed_velocity[n];
+        out[body.order_index(n)] = (time * during - (displacement[n] - step.start[n])) / times.h;
     }
     return true;
 }
@@ -89,47 +91,49 @@ void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff) {
 }
 
 Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
-                         const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> given,
+                         const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> contact_velocity,
                          const ImplicitStrains& out) {
-    const OfBody of(bodies, stiff, r);
+    const BodyRows body(bodies, stiff, r);
     LongStep& step = stiff.long_step;
-    const std::span<Vec3> next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
-                                contact = of.rows(out.contact_impulse);
-    const Mat3 back = bodies.turn(r).transpose();
-    const Real time = time_at_end(step, times), share = time / times.length, still_left = 1 - share;
+    const std::span<Vec3> next = body.rows(out.velocity_next), displacement_next = body.rows(out.displacement_next);
+    const std::span<const Vec3> displacement = body.rows(bodies.displacement), velocity = body.rows(bodies.velocity),
+                                contact = body.rows(out.contact_impulse);
+    const Mat3 to_mesh = bodies.turn(r).transpose();
+    const Real time = time_at_end(step, times), share = time / times.length, remaining_share = 1 - share;
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
-    Real taken = 0;                        // reported work of contacts and loads minus the growth of energy [J]
-    Real at_start = 0;                     // rate of change of the elastic energy at the start of the long step [W]
-    Real of_impulses = 0, of_inertia = 0;  // [J]
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const Real mass = of.stiff.mass(of.place(n));
-        const Vec3 impulse = back * contact[n];
-        step.answer_next[n] = step.answer[n] + given[of.place(n)];
-        step.contact_next[n] = step.contact[n] + impulse;
-        const Vec3 during = step.free[n] + step.answer_next[n] + still_left * step.left[n], before = velocity[n];
+    Real damped = 0;    // reported work of contacts and loads minus the growth of energy [J]
+    Real at_start = 0;  // rate of change of the elastic energy at the start of the long step [W]
+    Real impulse_energy = 0, inertia_energy = 0;  // [J]
+    for (std::size_t n = 0; n < body.count; ++n) {
+        const Real mass = body.stiff.mass(body.order_index(n));
+        const Vec3 impulse = to_mesh * contact[n];
+        step.contact_velocity_next[n] = step.contact_velocity[n] + contact_velocity[body.order_index(n)];
+        step.contact_impulse_next[n] = step.contact_impulse[n] + impulse;
+        const Vec3 during = step.free_velocity[n] + step.contact_velocity_next[n] +
+                            remaining_share * step.assumed_velocity[n],
+                   before = velocity[n];
         displacement_next[n] = step.start[n] + time * during;
         const Vec3 rate = (displacement_next[n] - displacement[n]) / times.h,
                    after = step.start_velocity[n] + share / times.theta * (during - step.start_velocity[n]);
-        taken += impulse.dot(before + rate) / 2;
+        damped += impulse.dot(before + rate) / 2;
         if (!loads.load.empty()) {
-            const Vec3 load = back * loads.load[of.first_node + n];
-            taken += times.h * load.dot(rate - (after - before) / 2) + (loads.kick - times.h) * load.dot(before);
+            const Vec3 load = to_mesh * loads.load[body.first_node + n];
+            damped += times.h * load.dot(rate - (after - before) / 2) + (loads.kick - times.h) * load.dot(before);
         }
-        taken -= mass / 2 * (after - before).dot(after + before);
+        damped -= mass / 2 * (after - before).dot(after + before);
         at_start += during.dot(step.start_force[n]);
-        of_impulses +=
-            during.dot(step.impulse[n] + times.theta * step.contact_next[n] + still_left * step.left_impulse[n]);
-        of_inertia += inertia * mass * during.squaredNorm();
+        impulse_energy += during.dot(step.impulse[n] + times.theta * step.contact_impulse_next[n] +
+                                     remaining_share * step.assumed_impulse[n]);
+        inertia_energy += inertia * mass * during.squaredNorm();
         next[n] = after;
     }
     // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
     // stiffness K. The product K v follows from A v, where A is the matrix of the long step and A v are the known
     // impulses.
     step.elastic_next = 0;
-    for (std::size_t n = 0; n < of.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
-    step.elastic_next += time * at_start + time * time / 2 * (of_impulses - of_inertia) / (within * within);
-    return taken - (step.elastic_next - step.elastic);
+    for (std::size_t n = 0; n < body.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
+    step.elastic_next += time * at_start + time * time / 2 * (impulse_energy - inertia_energy) / (within * within);
+    return damped - (step.elastic_next - step.elastic);
 }
 
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
@@ -139,23 +143,23 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         if (rows.size() == 0) continue;
         LongStep& step = stiff[r].long_step;
         if (step.rests) continue;
-        const std::span<Vec3> of_body =
+        const std::span<Vec3> body_velocity =
             left.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
         if (!(step.weight > 0)) {
             step.done = 0;
-            std::ranges::fill(of_body, Vec3::Zero());
+            std::ranges::fill(body_velocity, Vec3::Zero());
             continue;
         }
         step.done = time_at_end(step, times);
         step.elastic = step.elastic_next;
-        step.answer.swap(step.answer_next);
-        step.contact.swap(step.contact_next);
+        step.contact_velocity.swap(step.contact_velocity_next);
+        step.contact_impulse.swap(step.contact_impulse_next);
         if (!times.ends) continue;
-        // `left` is the length of a long step times the velocity that contacts would have caused in a complete long
-        // step. The next long step assumes this velocity at first. step.answer covers only the time step.done, hence
-        // the factor times.length / step.done.
-        for (std::size_t n = 0; n < of_body.size(); ++n)
-            of_body[n] = times.length * (times.length / step.done) * step.answer[n];
+        // `left` is the length of a long step times the velocity that contacts would have caused in a
+        // complete long step. The next long step assumes this velocity at first. step.contact_velocity covers only the
+        // time step.done, hence the factor times.length / step.done.
+        for (std::size_t n = 0; n < body_velocity.size(); ++n)
+            body_velocity[n] = times.length * (times.length / step.done) * step.contact_velocity[n];
     }
 }
 

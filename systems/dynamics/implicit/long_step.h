@@ -4,8 +4,8 @@
 
 #include <span>
 
+#include "systems/dynamics/implicit/body_rows.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
-#include "systems/dynamics/implicit/of_body.h"
 
 namespace skerry {
 
@@ -23,10 +23,11 @@ bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads,
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff);
 
 /// Computes displacements and velocities at the end of the short step. If the long step ends with this short step, the
-/// next long step starts from these values. `given`: node velocities that the contacts of this step add, by index in
-/// the elimination order [m/s]. Returns the damped energy without the jump of energy at a change to large strain [J].
+/// next long step starts from these values. `contact_velocity`: node velocities that the contacts of this step add, by
+/// index in the elimination order [m/s]. Returns the damped energy without the jump of energy at a change to large
+/// strain [J].
 Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
-                         const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> given,
+                         const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> contact_velocity,
                          const ImplicitStrains& out);
 
 }  // namespace skerry

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "systems/dynamics/implicit/of_body.h"
+#include "systems/dynamics/implicit/body_rows.h"
 
 namespace skerry {
 
@@ -16,7 +16,7 @@ Mat3 response_at(const AnchorRow& point, StiffBody& stiff) {
         const std::span<const Mat3> column = stiff.column(static_cast<std::size_t>(point.node[a]));
         for (std::size_t b = 0; b < 4; ++b)
             sum += point.weight[a] * point.weight[b] *
-                   column[static_cast<std::size_t>(stiff.place(static_cast<std::size_t>(point.node[b])))];
+                   column[static_cast<std::size_t>(stiff.order_index(static_cast<std::size_t>(point.node[b])))];
     }
     return sum;
 }

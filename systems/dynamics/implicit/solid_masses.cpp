@@ -19,10 +19,11 @@ Vec3 BodyShape::angular_momentum(std::span<const Vec3> velocity) const {
 }
 
 SolidMasses::SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
-                         std::span<const Index> place) {
+                         std::span<const Index> order_index) {
     for (const std::array<Index, 4>& nodes : tetrahedra) {
         std::array<Index, 4>& corners = corners_.emplace_back();
-        std::ranges::transform(nodes, corners.begin(), [&](Index n) { return place[static_cast<std::size_t>(n)]; });
+        std::ranges::transform(nodes, corners.begin(),
+                               [&](Index n) { return order_index[static_cast<std::size_t>(n)]; });
     }
     for (const Real of_tetrahedron : mass) share_.push_back(of_tetrahedron / 20);
 }

@@ -24,9 +24,9 @@ struct BodyShape {
 class SolidMasses {
 public:
     SolidMasses() = default;
-    /// `mass`: by tetrahedron [kg]; `place`: index of each node in the elimination order.
+    /// `mass`: by tetrahedron [kg]; `order_index`: index of each node in the elimination order.
     SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
-                std::span<const Index> place);
+                std::span<const Index> order_index);
 
     /// Computes the lever arms of a shape from its node positions.
     void find_arms(BodyShape& shape) const;

@@ -31,12 +31,12 @@ public:
             step_.within[k] = step_.carried[k] + within_ * velocity;
             if (!stiff_.holds(k)) sum += velocity.dot(inertia_ / 2 * stiff_.mass(k) * velocity - step_.impulse[k]);
         }
-        return sum + stiff_.elements().energy(step_.within) + of_spin();
+        return sum + stiff_.elements().energy(step_.within) + spin_energy();
     }
 
     /// Computes forces and gradient at the displacements step_.within, and the next Newton direction with the present
     /// matrix factor. Returns the squared Newton decrement g.A^-1 g, with the gradient g and the matrix A [J].
-    Real turn() {
+    Real evaluate() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {
             const Vec3 spin = step_.shape.inertia().ldlt().solve(step_.angular_momentum);
@@ -46,12 +46,12 @@ public:
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             step_.gradient[k] =
                 inertia_ * stiff_.mass(k) * step_.velocity[k] + within_ * step_.force[k] - step_.impulse[k];
-        return redirect();
+        return solve_direction();
     }
 
     /// Computes the Newton direction with a new matrix factor and an unchanged gradient. Returns the squared Newton
     /// decrement [J].
-    Real redirect() {
+    Real solve_direction() {
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) step_.direction[k] = -step_.gradient[k];
         stiff_.respond(step_.direction);
         Real decrement = 0;
@@ -61,7 +61,7 @@ public:
     }
 
     /// Kinetic energy that elastic and centrifugal forces alone would give to the free nodes in the step [J].
-    Real of_forces() const {
+    Real force_energy() const {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             if (!stiff_.holds(k)) sum += (within_ * step_.force[k]).squaredNorm() / (2 * stiff_.mass(k));
@@ -73,13 +73,13 @@ public:
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             if (!stiff_.holds(k)) sum += stiff_.mass(k) * step_.velocity[k].squaredNorm() / 2;
-        return sum + stiff_.elements().energy(step_.within) + of_spin();
+        return sum + stiff_.elements().energy(step_.within) + spin_energy();
     }
 
 private:
     /// Energy of the spin with the present angular momentum and the inertia of the shape within the step [J]. Its
     /// negative gradient is the centrifugal force.
-    Real of_spin() const {
+    Real spin_energy() const {
         if (!spins_) return 0;
         stiff_.find_shape(step_.within, step_.shape);
         return step_.angular_momentum.dot(step_.shape.inertia().ldlt().solve(step_.angular_momentum)) / 2;
@@ -93,9 +93,9 @@ private:
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
     // Limits of Newton's method. `close`: bound on the Newton decrement relative to the first one. `rounding`: bound on
-    // the squared decrement relative to the sum of all energies. `still_good`: a new matrix factor is computed if more
-    // than this fraction of the decrement remains after a step.
-    constexpr Real close = 1e-3, rounding = 1e-13, still_good = 0.1;
+    // the squared decrement relative to the sum of all energies. `slow_decrease`: a new matrix factor is computed if
+    // more than this fraction of the decrement remains after a step.
+    constexpr Real close = 1e-3, rounding = 1e-13, slow_decrease = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;
     step.counts = {.solved = 1};
@@ -108,19 +108,19 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
         return stiff.prepare_tangent(inertia, within * within, step.within);
     };
     if (!std::isfinite(value) || !factor()) return false;
-    Real decrement = objective.turn();
+    Real decrement = objective.evaluate();
     const Real first = decrement;
     // In a very short step the decrement is below the rounding error of the energies although forces act. The given
     // velocities are accepted only if the decrement is also small compared with the effect of these forces, because the
     // reactions of held nodes follow from the change of the velocities.
-    if (decrement <= rounding * std::min(size, objective.of_forces())) return true;
+    if (decrement <= rounding * std::min(size, objective.force_energy())) return true;
     for (int k = 0; k < most_steps; ++k) {
         if (!std::isfinite(decrement)) return false;
         if (k > 0 && decrement <= std::max(close * close * first, rounding * size)) return true;
         ++step.counts.steps;
-        constexpr Real enough = 1e-4;  // required decrease, as a fraction of the decrease that the slope predicts
+        constexpr Real armijo = 1e-4;  // required decrease, as a fraction of the decrease that the slope predicts
         Real along = 1, next = objective.at(along);
-        for (int halved = 0; !(next <= value - enough * along * decrement + rounding * size); ++halved) {
+        for (int halved = 0; !(next <= value - armijo * along * decrement + rounding * size); ++halved) {
             if (halved == most_halvings) return false;
             along /= 2;
             next = objective.at(along);
@@ -128,10 +128,10 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
         value = next;
         for (std::size_t n = 0; n < step.velocity.size(); ++n) step.velocity[n] += along * step.direction[n];
         const Real before = decrement;
-        decrement = objective.turn();
-        if (decrement > std::max(still_good * still_good * before, rounding * size)) {
+        decrement = objective.evaluate();
+        if (decrement > std::max(slow_decrease * slow_decrease * before, rounding * size)) {
             if (!factor()) return false;
-            decrement = objective.redirect();
+            decrement = objective.solve_direction();
         }
     }
     return false;

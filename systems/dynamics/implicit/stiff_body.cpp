@@ -35,21 +35,22 @@ std::vector<std::vector<Index>> neighbours_of(const ElementList& elements, std::
     return neighbours;
 }
 
-std::vector<Index> inverse_of(std::span<const Index> place) {
-    std::vector<Index> node(place.size());
-    for (std::size_t n = 0; n < place.size(); ++n) node[static_cast<std::size_t>(place[n])] = static_cast<Index>(n);
+std::vector<Index> inverse_of(std::span<const Index> order_index) {
+    std::vector<Index> node(order_index.size());
+    for (std::size_t n = 0; n < order_index.size(); ++n)
+        node[static_cast<std::size_t>(order_index[n])] = static_cast<Index>(n);
     return node;
 }
 
 /// Matrix of zero blocks. It has a block on the diagonal for each node and a block for each pair of nodes that share an
 /// element.
-BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place,
+BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> order_index,
                      std::span<const Index> node) {
     BlockRows rows;
-    for (std::size_t k = 0; k < place.size(); ++k) {
+    for (std::size_t k = 0; k < order_index.size(); ++k) {
         const std::size_t first = rows.column.size();
         for (const Index other : neighbours[static_cast<std::size_t>(node[k])])
-            if (const Index column = place[static_cast<std::size_t>(other)]; column < static_cast<Index>(k))
+            if (const Index column = order_index[static_cast<std::size_t>(other)]; column < static_cast<Index>(k))
                 rows.column.push_back(column);
         std::sort(rows.column.begin() + static_cast<std::ptrdiff_t>(first), rows.column.end());
         rows.column.push_back(static_cast<Index>(k));
@@ -66,7 +67,7 @@ Mat3& block_at(BlockRows& rows, Index row, Index column) {
 }
 
 /// Restricts the matrix to free nodes. In rows and columns of held nodes only the inertia on the diagonal remains.
-void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> mass, Real inertia, BlockRows& matrix) {
+void decouple_held(std::span<const std::uint8_t> held, std::span<const Real> mass, Real inertia, BlockRows& matrix) {
     for (std::size_t k = 0; k < matrix.size(); ++k)
         for (auto i = static_cast<std::size_t>(matrix.offset[k]); i < static_cast<std::size_t>(matrix.offset[k + 1]);
              ++i) {
@@ -82,9 +83,9 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
                      std::span<const Real> mass, std::span<const Vec3> rest_position,
                      std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> tetrahedron_mass) {
     const std::vector<std::vector<Index>> neighbours = neighbours_of(elements, mass.size());
-    place_ = elimination_places(neighbours);
-    node_ = inverse_of(place_);
-    stiffness_ = pattern_of(neighbours, place_, node_);
+    order_index_ = elimination_order(neighbours);
+    node_ = inverse_of(order_index_);
+    stiffness_ = pattern_of(neighbours, order_index_, node_);
     for (std::size_t e = 0; e < elements.size(); ++e) {
         const MaterialConstants material =
             part_of(constants[static_cast<std::size_t>(elements.material[e])], elements.part[e]);
@@ -92,8 +93,8 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
         const auto gradients = std::span(elements.gradient).subspan(elements.first_node[e], nodes.size());
         for (std::size_t k = 0; k < nodes.size(); ++k)
             for (std::size_t l = 0; l < nodes.size(); ++l) {
-                const Index row = place_[static_cast<std::size_t>(nodes[k])],
-                            column = place_[static_cast<std::size_t>(nodes[l])];
+                const Index row = order_index_[static_cast<std::size_t>(nodes[k])],
+                            column = order_index_[static_cast<std::size_t>(nodes[l])];
                 if (column <= row)
                     block_at(stiffness_, row, column) +=
                         elements.volume[e] * small_strain_stiffness(material, gradients[k], gradients[l]);
@@ -109,13 +110,13 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     center /= total_mass_;
     Mat3 inertia = Mat3::Zero();
     for (std::size_t n = 0; n < mass.size(); ++n) {
-        const auto k = static_cast<std::size_t>(place_[n]);
+        const auto k = static_cast<std::size_t>(order_index_[n]);
         mass_[k] = mass[n];
         arm_[k] = rest_position[n] - center;
         inertia += mass[n] * (arm_[k].squaredNorm() * Mat3::Identity() - arm_[k] * arm_[k].transpose());
     }
     inverse_inertia_ = inertia.inverse();
-    solid_ = SolidMasses(tetrahedra, tetrahedron_mass, place_);
+    solid_ = SolidMasses(tetrahedra, tetrahedron_mass, order_index_);
     BodyShape rest{arm_, {}};
     solid_.find_arms(rest);
     inverse_solid_inertia_ = rest.inertia().inverse();
@@ -132,7 +133,7 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     stretching_spin_ = small_strain / 3 * volume * least;
     matrix_ = stiffness_;
     factor_ = BlockCholesky(stiffness_);
-    elements_ = BodyElements(elements, constants, place_);
+    elements_ = BodyElements(elements, constants, order_index_);
     slot_of_.assign(mass.size(), no_index);
 }
 
@@ -141,7 +142,7 @@ void StiffBody::hold(std::span<const Real> inverse_mass) {
     if (std::ranges::any_of(inverse_mass, [](Real inverse) { return !(inverse > 0); })) {
         held.resize(size());
         for (std::size_t n = 0; n < inverse_mass.size(); ++n)
-            held[static_cast<std::size_t>(place_[n])] = !(inverse_mass[n] > 0);
+            held[static_cast<std::size_t>(order_index_[n])] = !(inverse_mass[n] > 0);
     }
     if (held == held_) return;
     held_ = std::move(held);
@@ -160,49 +161,52 @@ void StiffBody::forget_columns() {
     touched_.clear();
 }
 
-bool StiffBody::is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part) {
-    const BodyElements::Misfit misfit = elements_.misfit(displacement);
-    if (!(misfit.off <= part * energy_share * misfit.linear)) return true;
-    if (!(energy_of_spin(angular_momentum) > part * energy_share * misfit.linear)) return false;
+bool StiffBody::is_inaccurate(const Displacements& displacement, const Vec3& angular_momentum, Real factor) {
+    const BodyElements::EnergyDifference energies = elements_.compare_energies(displacement);
+    if (!(energies.difference <= factor * energy_share * energies.linear)) return true;
+    if (!(energy_of_spin(angular_momentum) > factor * energy_share * energies.linear)) return false;
     BodyShape& shape = large_step.shape;
     find_shape(displacement, shape);
     const Vec3 spin = inverse_solid_inertia_ * angular_momentum;
-    return (shape.inertia().ldlt().solve(angular_momentum) - spin).norm() > part * small_strain * spin.norm();
+    return (shape.inertia().ldlt().solve(angular_momentum) - spin).norm() > factor * small_strain * spin.norm();
 }
 
-bool StiffBody::is_beyond(const Displacements& displacement, const Vec3& angular_momentum) {
-    if (!elements_.any_bends()) return false;
+bool StiffBody::is_large(const Displacements& displacement, const Vec3& angular_momentum) {
+    if (!elements_.any_nonlinear()) return false;
     return energy_of_spin(angular_momentum) > stretching_spin_ ||
-           (!(elements_.largest_strain(displacement) <= small_strain) && is_off(displacement, angular_momentum, 1));
+           (!(elements_.largest_strain(displacement) <= small_strain) &&
+            is_inaccurate(displacement, angular_momentum, 1));
 }
 
-bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    if (!elements_.any_bends()) return false;
+bool StiffBody::becomes_large_in_order(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
+    if (!elements_.any_nonlinear()) return false;
     if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
     if (!evaluated_at_.empty()) {
-        Real way = 0;  // largest squared change of a node's displacement since the last evaluation [m^2]
+        Real squared_change = 0;  // largest squared change of a node's displacement since the last evaluation [m^2]
         for (std::size_t k = 0; k < displacement.size(); ++k)
-            way = std::max(way, (displacement[k] - evaluated_at_[k]).squaredNorm());
-        if (way == 0 && angular_momentum == evaluated_with_) return large_there_;
+            squared_change = std::max(squared_change, (displacement[k] - evaluated_at_[k]).squaredNorm());
+        if (squared_change == 0 && angular_momentum == evaluated_with_) return evaluated_large_;
         constexpr Real surely = 1 - 1e-9;  // margin for rounding errors
-        if (strain_there_ + elements_.strain_by_displacement() * std::sqrt(way) < surely * small_strain) return false;
+        if (evaluated_strain_ + elements_.strain_by_displacement() * std::sqrt(squared_change) < surely * small_strain)
+            return false;
     }
     evaluated_at_.assign(displacement.begin(), displacement.end());
     evaluated_with_ = angular_momentum;
-    strain_there_ = elements_.largest_strain(displacement);
-    large_there_ = is_beyond(displacement, angular_momentum);
-    if (!std::isfinite(strain_there_)) evaluated_at_.clear();
-    return large_there_;
+    evaluated_strain_ = elements_.largest_strain(displacement);
+    evaluated_large_ = is_large(displacement, angular_momentum);
+    if (!std::isfinite(evaluated_strain_)) evaluated_at_.clear();
+    return evaluated_large_;
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    // Fractions of the bounds of becomes_large() below which strain counts as small again. `calmer`: fraction of the
-    // bounds on energies and spin. `still`: fraction of small_strain, below which strain is small without a test of
-    // energies, because these are mostly rounding errors there.
-    constexpr Real calmer = 0.25, still = 0.1;
-    if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
+    // Fractions of the bounds of becomes_large() below which strain counts as small again. `accuracy_fraction`:
+    // fraction of the bounds on energies and spin. `strain_fraction`: fraction of small_strain, below which strain is
+    // small without a test of energies, because these are mostly rounding errors there.
+    constexpr Real accuracy_fraction = 0.25, strain_fraction = 0.1;
+    if (energy_of_spin(angular_momentum) > accuracy_fraction * stretching_spin_) return false;
     const Displacements at(displacement, node_);
-    return elements_.largest_strain(at) <= still * small_strain || !is_off(at, angular_momentum, calmer);
+    return elements_.largest_strain(at) <= strain_fraction * small_strain ||
+           !is_inaccurate(at, angular_momentum, accuracy_fraction);
 }
 
 Real StiffBody::elastic_energy(std::span<const Vec3> displacement, bool large) const {
@@ -220,7 +224,7 @@ Real StiffBody::elastic_energy(std::span<const Vec3> displacement, bool large) c
     return twice / 2;
 }
 
-void StiffBody::take_rigid_motion(std::span<Vec3> velocity) const {
+void StiffBody::remove_rigid_motion(std::span<Vec3> velocity) const {
     Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();
     for (std::size_t k = 0; k < size(); ++k) {
         const Vec3 of_node = mass_[k] * velocity[static_cast<std::size_t>(node_[k])];
@@ -237,7 +241,7 @@ void StiffBody::find_shape(const Displacements& displacement, BodyShape& shape) 
     solid_.find_arms(shape);
 }
 
-void StiffBody::stand_in(const Displacements& displacement) {
+void StiffBody::set_shape(const Displacements& displacement) {
     find_shape(displacement, shape_);
     Mat3 inertia = Mat3::Zero();
     for (std::size_t k = 0; k < size(); ++k) {
@@ -247,7 +251,7 @@ void StiffBody::stand_in(const Displacements& displacement) {
     inverse_arm_inertia_ = inertia.inverse();
 }
 
-Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
+Mat3 StiffBody::rotate_to_own_frame(std::span<Vec3> displacement) const {
     // Finds the rotation for which the sum of m X x y is zero, by Newton's method. m are the node masses, X and y the
     // rest and the present positions relative to the centre of mass, and x is the cross product. A body rotates only
     // little against its frame in one step, so a few iterations suffice: the error after an angle of 1e-8 rad is about
@@ -257,13 +261,13 @@ Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
     Mat3 turn = Mat3::Identity();
     for (int k = 0; k < most; ++k) {
         Vec3 moment = Vec3::Zero();
-        Mat3 second = Mat3::Zero();
+        Mat3 moment_matrix = Mat3::Zero();
         for (std::size_t p = 0; p < size(); ++p) {
-            const Vec3 place = arm_[p] + displacement[static_cast<std::size_t>(node_[p])];
-            moment += mass_[p] * arm_[p].cross(place);
-            second += mass_[p] * place * arm_[p].transpose();
+            const Vec3 position = arm_[p] + displacement[static_cast<std::size_t>(node_[p])];
+            moment += mass_[p] * arm_[p].cross(position);
+            moment_matrix += mass_[p] * position * arm_[p].transpose();
         }
-        const Mat3 slope = second.trace() * Mat3::Identity() - (second + second.transpose()) / 2;
+        const Mat3 slope = moment_matrix.trace() * Mat3::Identity() - (moment_matrix + moment_matrix.transpose()) / 2;
         const Vec3 angle = slope.ldlt().solve(moment);
         if (!(angle.norm() > rounding)) break;
         const Mat3 back = rotation_matrix(-angle);
@@ -285,7 +289,7 @@ bool StiffBody::prepare(Real inertia, Real stiffness) {
     for (std::size_t i = 0; i < matrix_.block.size(); ++i) matrix_.block[i] = stiffness * stiffness_.block[i];
     for (std::size_t k = 0; k < size(); ++k)
         matrix_.block[static_cast<std::size_t>(matrix_.offset[k + 1]) - 1].diagonal().array() += inertia * mass_[k];
-    if (is_held()) leave_out_held(held_, mass_, inertia, matrix_);
+    if (is_held()) decouple_held(held_, mass_, inertia, matrix_);
     forget_columns();
     if (factor_.factor(matrix_)) return true;
     forget_factor();
@@ -299,13 +303,13 @@ bool StiffBody::prepare_tangent(Real inertia, Real stiffness, std::span<const Ve
     elements_.add_tangent(displacement, stiffness, matrix_);
     for (std::size_t k = 0; k < size(); ++k)
         matrix_.block[static_cast<std::size_t>(matrix_.offset[k + 1]) - 1].diagonal().array() += inertia * mass_[k];
-    if (is_held()) leave_out_held(held_, mass_, inertia, matrix_);
+    if (is_held()) decouple_held(held_, mass_, inertia, matrix_);
     tangent_ = factor_.factor(matrix_);
-    if (tangent_ && !is_held()) find_rigid_answers();
+    if (tangent_ && !is_held()) prepare_rigid_responses();
     return tangent_;
 }
 
-void StiffBody::find_rigid_answers() {
+void StiffBody::prepare_rigid_responses() {
     shifts_.resize(size());
     turns_.resize(size());
     for (std::size_t k = 0; k < size(); ++k) {
@@ -326,7 +330,7 @@ void StiffBody::find_rigid_answers() {
 }
 
 template <class X>
-void StiffBody::take_rigid_answer(std::span<X> velocity) const {
+void StiffBody::remove_rigid_response(std::span<X> velocity) const {
     X momentum = X::Zero(), moment = X::Zero();
     for (std::size_t k = 0; k < velocity.size(); ++k) {
         momentum += mass_[k] * velocity[k];
@@ -339,7 +343,7 @@ void StiffBody::take_rigid_answer(std::span<X> velocity) const {
 }
 
 template <class X>
-void StiffBody::take_momenta_of(std::span<X> velocity) const {
+void StiffBody::remove_momenta_of(std::span<X> velocity) const {
     X momentum = X::Zero(), moment = X::Zero();
     for (std::size_t k = 0; k < velocity.size(); ++k) {
         momentum += mass_[k] * velocity[k];
@@ -350,7 +354,7 @@ void StiffBody::take_momenta_of(std::span<X> velocity) const {
 }
 
 template <class X>
-void StiffBody::take_rigid_part(std::span<X> impulse) const {
+void StiffBody::remove_rigid_part(std::span<X> impulse) const {
     X sum = X::Zero(), moment = X::Zero();
     for (std::size_t k = 0; k < impulse.size(); ++k) {
         sum += impulse[k];
@@ -370,16 +374,16 @@ void StiffBody::respond_to(std::span<X> impulse) const {
     }
     if (tangent_) {
         factor_.solve(impulse);
-        take_rigid_answer(impulse);
-        take_momenta_of(impulse);  // this call removes only rounding errors
+        remove_rigid_response(impulse);
+        remove_momenta_of(impulse);  // this call removes only rounding errors
         return;
     }
-    take_rigid_part(impulse);
+    remove_rigid_part(impulse);
     factor_.solve(impulse);
     // Removes the rounding errors that have the form of rigid motion. They matter for stiff bodies, whose rigid
     // response is far larger than their elastic response.
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
-    take_rigid_part(impulse);
+    remove_rigid_part(impulse);
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] /= mass_[k];
 }
 
@@ -408,7 +412,7 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
         node_in_[s] = static_cast<Index>(node);
         const auto values = std::span(columns_).subspan(s * size(), size());
         std::ranges::fill(values, Mat3::Zero());
-        values[static_cast<std::size_t>(place_[node])].setIdentity();
+        values[static_cast<std::size_t>(order_index_[node])].setIdentity();
         respond_to(values);
     }
     used_at_[static_cast<std::size_t>(slot)] = uses_;
@@ -443,7 +447,7 @@ void StiffBody::find_responses() {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
         // Each column is written to both triangles, so the matrix is bitwise symmetric.
         for (std::size_t j = i; j < count; ++j) {
-            const Mat3& block = from[static_cast<std::size_t>(place(static_cast<std::size_t>(touched_[j])))];
+            const Mat3& block = from[static_cast<std::size_t>(order_index(static_cast<std::size_t>(touched_[j])))];
             for (std::size_t c = 0; c < 3; ++c)
                 for (std::size_t r = 0; r < 3; ++r) {
                     const Real number = block(static_cast<Index>(r), static_cast<Index>(c));

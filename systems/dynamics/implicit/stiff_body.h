@@ -67,25 +67,27 @@ struct LongStep {
     // Values at the start of the long step:
     std::vector<Vec3> start, start_velocity;  // [m], [m/s]
     std::vector<Vec3> start_force;            // elastic forces K u at the displacements `start` [N]
-    std::vector<Vec3> impulse, free;  // impulses without contacts [N s], and the velocities that they cause [m/s]
+    std::vector<Vec3> impulse,
+        free_velocity;  // impulses without contacts [N s], and the velocities that they cause [m/s]
     // Velocities [m/s] that the contacts of the last long step caused, and their impulses [N s]. This long step starts
     // with the assumption that these contacts continue.
-    std::vector<Vec3> left, left_impulse;
+    std::vector<Vec3> assumed_velocity, assumed_impulse;
     // Contributions of contacts from the start of the long step to the start of this short step; columns `_next`: to
     // the end of this short step.
-    std::vector<Vec3> answer, answer_next;    // velocities caused by contacts [m/s]
-    std::vector<Vec3> contact, contact_next;  // impulses of contacts, in the frame of the mesh [N s]
-    Real elastic = 0, elastic_next = 0;       // elastic energy at the start and at the end of this short step [J]
+    std::vector<Vec3> contact_velocity, contact_velocity_next;  // velocities caused by contacts [m/s]
+    std::vector<Vec3> contact_impulse, contact_impulse_next;    // impulses of contacts, in the frame of the mesh [N s]
+    Real elastic = 0, elastic_next = 0;  // elastic energy at the start and at the end of this short step [J]
 
     void resize(std::size_t count) {
-        for (std::vector<Vec3>* column : {&start, &start_velocity, &start_force, &impulse, &free, &left, &left_impulse,
-                                          &answer, &answer_next, &contact, &contact_next})
+        for (std::vector<Vec3>* column :
+             {&start, &start_velocity, &start_force, &impulse, &free_velocity, &assumed_velocity, &assumed_impulse,
+              &contact_velocity, &contact_velocity_next, &contact_impulse, &contact_impulse_next})
             column->assign(count, Vec3::Zero());
     }
 };
 
 /// Stiffness, masses and matrix factor of one implicit body. Vectors by node are in the elimination order unless a
-/// comment says "by node of the body"; place() gives the index of a node in this order.
+/// comment says "by node of the body"; order_index() gives the index of a node in this order.
 class StiffBody {
 public:
     StiffBody() = default;
@@ -101,12 +103,12 @@ public:
     void hold(std::span<const Real> inverse_mass);
     bool is_held() const { return !held_.empty(); }
 
-    bool empty() const { return place_.empty(); }
-    std::size_t size() const { return place_.size(); }
-    Index place(std::size_t node) const { return place_[node]; }
+    bool empty() const { return order_index_.empty(); }
+    std::size_t size() const { return order_index_.size(); }
+    Index order_index(std::size_t node) const { return order_index_[node]; }
     /// Node of the body at each index of the elimination order.
     std::span<const Index> nodes() const { return node_; }
-    Real mass(std::size_t place) const { return mass_[place]; }
+    Real mass(std::size_t order_index) const { return mass_[order_index]; }
 
     /// Computes out = K u for the displacements u, with the stiffness K at rest [N].
     void elastic_forces(std::span<const Vec3> displacement, std::span<Vec3> out) const {
@@ -124,11 +126,11 @@ public:
     ///
     /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-        return is_beyond({displacement, node_}, angular_momentum);
+        return is_large({displacement, node_}, angular_momentum);
     }
     /// Variant of becomes_large() for displacements by index in the elimination order. Evaluates elements only if nodes
     /// have moved far enough since the last evaluation for strain to become large.
-    bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
+    bool becomes_large_in_order(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
     /// must be below a quarter of the bound in becomes_large(). In addition all strains |F - 1| must be below a tenth
     /// of small_strain, or the energies and the spin must be accurate by the bounds of becomes_large() divided by four.
@@ -139,19 +141,19 @@ public:
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
     /// Removes rigid-body motion from node velocities, with the masses and lever arms of the rest shape. `velocity`: by
     /// node of the body [m/s].
-    void take_rigid_motion(std::span<Vec3> velocity) const;
+    void remove_rigid_motion(std::span<Vec3> velocity) const;
     /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
     /// Sets shape() to the shape with the given displacements. If the matrix of respond() is a tangent, respond()
     /// removes the rigid-body motion of this shape.
-    void stand_in(const Displacements& displacement);
-    /// Removes momentum and angular momentum from node velocities, for the shape that stand_in() has set. `velocity`:
+    void set_shape(const Displacements& displacement);
+    /// Removes momentum and angular momentum from node velocities, for the shape that set_shape() has set. `velocity`:
     /// by index in the elimination order [m/s].
-    void take_momenta(std::span<Vec3> velocity) const { take_momenta_of(velocity); }
+    void remove_momenta(std::span<Vec3> velocity) const { remove_momenta_of(velocity); }
     const BodyShape& shape() const { return shape_; }
     /// Rotates displacements (by node) into the frame in which they contain no rigid rotation
     /// (docs/methods/implicit_bodies.md 1). Returns the rotation from this frame to the frame of the mesh.
-    Mat3 turn_to_own_frame(std::span<Vec3> displacement) const;
+    Mat3 rotate_to_own_frame(std::span<Vec3> displacement) const;
 
     /// Makes A = inertia M + stiffness K the matrix of respond(), with masses M and stiffness matrix K. Reuses the
     /// present factor if it was computed for this matrix. Returns false if A is not positive definite. Rows of held
@@ -172,7 +174,7 @@ public:
     /// State of the long step in progress.
     LongStep long_step;
     const BodyElements& elements() const { return elements_; }
-    bool holds(std::size_t place) const { return is_held() && held_[place] != 0; }
+    bool holds(std::size_t order_index) const { return is_held() && held_[order_index] != 0; }
     /// Replaces impulses [N s] by the velocities that they cause, A^-1 times the impulses [m/s]. For a free body the
     /// rigid part of the impulses is removed, and the velocities have no rigid part. For a held body impulses on held
     /// nodes are ignored, and held nodes get zero velocity.
@@ -192,32 +194,32 @@ public:
 
 private:
     template <class X>
-    void take_rigid_part(std::span<X> impulse) const;
+    void remove_rigid_part(std::span<X> impulse) const;
     template <class X>
     void respond_to(std::span<X> impulse) const;
     void find_responses();
     void forget_factor();
     void forget_columns();
     /// True if the energies or the spin are inaccurate as defined at becomes_large(), with its bounds multiplied by
-    /// `part`. Does not test the strain |F - 1|.
-    bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
+    /// `factor`. Does not test the strain |F - 1|.
+    bool is_inaccurate(const Displacements& displacement, const Vec3& angular_momentum, Real factor);
     /// Energy of the spin for an angular momentum, with the inertia at rest [J].
     Real energy_of_spin(const Vec3& angular_momentum) const {
         return angular_momentum.dot(inverse_solid_inertia_ * angular_momentum) / 2;
     }
-    bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum);
+    bool is_large(const Displacements& displacement, const Vec3& angular_momentum);
     /// Computes the corrections that remove rigid motion from responses with a tangent matrix. They are needed because
     /// a tangent matrix, unlike the stiffness K at rest, gives elastic forces also for rigid motion.
-    void find_rigid_answers();
+    void prepare_rigid_responses();
     template <class X>
-    void take_rigid_answer(std::span<X> velocity) const;
+    void remove_rigid_response(std::span<X> velocity) const;
     template <class X>
-    void take_momenta_of(std::span<X> velocity) const;
+    void remove_momenta_of(std::span<X> velocity) const;
 
-    std::vector<Index> place_;  // index of each node of the body in the elimination order
-    std::vector<Index> node_;   // node of the body at each index of the elimination order
-    std::vector<Real> mass_;    // by index in the elimination order [kg]
-    std::vector<Vec3> arm_;     // rest position relative to the centre of mass, by index in the elimination order [m]
+    std::vector<Index> order_index_;  // index of each node of the body in the elimination order
+    std::vector<Index> node_;         // node of the body at each index of the elimination order
+    std::vector<Real> mass_;          // by index in the elimination order [kg]
+    std::vector<Vec3> arm_;  // rest position relative to the centre of mass, by index in the elimination order [m]
     // 1 for held nodes, by index in the elimination order; empty if no node is held.
     std::vector<std::uint8_t> held_;
     Real total_mass_ = 0;
@@ -225,7 +227,7 @@ private:
     Mat3 inverse_solid_inertia_ = Mat3::Zero();  // inverse inertia of the solid at rest [1/(kg m^2)]
     Real stretching_spin_ = 0;                   // energy of the spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
-    BodyShape shape_;  // set by stand_in()
+    BodyShape shape_;  // set by set_shape()
     // Inverse of the sum of (|a|^2 1 - a a^T) / m over the nodes, with the lever arm a and the mass m of a node [1/(kg
     // m^2)].
     Mat3 inverse_arm_inertia_ = Mat3::Zero();
@@ -241,12 +243,12 @@ private:
     std::vector<Mat3> shifts_, turns_;
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
-    // Inputs and results of the last evaluation in becomes_large_in_places(). evaluated_at_ is empty before the first
+    // Inputs and results of the last evaluation in becomes_large_in_order(). evaluated_at_ is empty before the first
     // evaluation, and after one with a strain that is not finite.
     std::vector<Vec3> evaluated_at_;      // displacements at the last evaluation, by index in the elimination order [m]
     Vec3 evaluated_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
-    Real strain_there_ = 0;
-    bool large_there_ = false;
+    Real evaluated_strain_ = 0;
+    bool evaluated_large_ = false;
     // For each node of the body: slot in `columns_` with the column of the node, or no_index.
     std::vector<Index> slot_of_;
     std::vector<Index> node_in_;          // node of each slot

@@ -53,7 +53,7 @@ struct Gradients {
     /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding errors leave about
     /// 1e-16 of a gradient g. This remainder moves nothing, but would count in full in the bound on the step, which
     /// contains g g^T / |g|^2 (stiffness_share.cpp).
-    void drop_nothings() {
+    void drop_zero_gradients() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;
         for (const Vec3& g : gradient) largest = std::max(largest, g.squaredNorm());
@@ -89,11 +89,12 @@ void add_groups(const RestMesh& mesh, const Ragged<Index>& groups, Real share, E
         element.node.clear();
         element.gradient.clear();
         for (const Index t : group) {
-            const TetrahedronGradients& of = rest[static_cast<std::size_t>(t)];
+            const TetrahedronGradients& tetrahedron = rest[static_cast<std::size_t>(t)];
             for (std::size_t a = 0; a < 4; ++a)
-                element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
+                element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a],
+                            (share * tetrahedron.volume / volume) * tetrahedron.g[a]);
         }
-        element.drop_nothings();
+        element.drop_zero_gradients();
         // The force on node 0 is minus the sum of the other forces (for_each_force). Its gradient is therefore set to
         // minus the sum of the other gradients, which differs from the sum of its tetrahedron gradients by rounding
         // errors and dropped nodes.
@@ -117,13 +118,13 @@ void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list
     struct Side {
         Index low, high, item;
     };
-    std::vector<Side> sides, spare;
+    std::vector<Side> sides, buffer;
     sides.reserve(corners.size() * mesh.tetrahedra.size());
     for (const std::array<Index, 4>& node : mesh.tetrahedra)
         for (const auto& [a, b] : corners)
             sides.push_back({std::min(node[a], node[b]), std::max(node[a], node[b]), static_cast<Index>(sides.size())});
     const auto node_count = static_cast<Index>(mesh.position.size());
-    counting_sort(sides, spare, node_count, [](const Side& side) { return side.low; });
+    counting_sort(sides, buffer, node_count, [](const Side& side) { return side.low; });
     // The sort has placed edges with the same lower node next to each other. `seen[n]` is the first of these edges with
     // the upper node n; an entry with another lower node is out of date.
     std::vector<Index> first_alike(sides.size());

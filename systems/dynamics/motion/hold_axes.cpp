@@ -73,10 +73,10 @@ ContactKey key_of(const HeldDirection& held) {
 
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse) {
-    ExternalWork all, of_ghosts;
+    ExternalWork all, ghost_work;
     held_impulse.assign(inputs.node.size(), Vec3::Zero());
     for_each_held(inputs, h, [&](const HeldDirection& held) {
-        ExternalWork& sum = inputs.ghosts.contain(inputs.body[held.node]) ? of_ghosts : all;
+        ExternalWork& sum = inputs.ghosts.contain(inputs.body[held.node]) ? ghost_work : all;
         const Real impulse = inputs.mass[held.node] * (held.speed - held.direction.dot(velocity_next[held.node]));
         const Real gained = held.speed - held.direction.dot(inputs.velocity[held.node]);
         velocity_next[held.node] += impulse * inputs.inverse_mass[held.node] * held.direction;
@@ -110,8 +110,8 @@ void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cabl
                 node[n].impulse += weight * contacts.impulse[c];
             });
     for (const CableBlock& cable : cables.solved())
-        for (const Stencil& of : rows_of(cables.stencil.span(), cable.points))
-            for_each_node(of, [&](std::size_t n, Real) { node[n].in_region = true; });
+        for (const Stencil& point_stencil : rows_of(cables.stencil.span(), cable.points))
+            for_each_node(point_stencil, [&](std::size_t n, Real) { node[n].in_region = true; });
     for_each_held(inputs, h, [&](const HeldDirection& held) {
         if (!node[held.node].in_region) return;
         const auto row = static_cast<Index>(held.node);
@@ -152,9 +152,9 @@ ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> 
 
 ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
                              std::span<Vec3> push_out, std::span<Vec3> held_impulse) {
-    ExternalWork all, of_ghosts;
+    ExternalWork all, ghost_work;
     for_each_held(inputs, h, [&](const HeldDirection& held) {
-        ExternalWork& sum = inputs.ghosts.contain(inputs.body[held.node]) ? of_ghosts : all;
+        ExternalWork& sum = inputs.ghosts.contain(inputs.body[held.node]) ? ghost_work : all;
         push_out[held.node] -= held.direction.dot(push_out[held.node]) * held.direction;
         const Real before = held.direction.dot(velocity_next[held.node]);
         const Real impulse = inputs.mass[held.node] * (held.speed - before);

@@ -21,11 +21,11 @@ constexpr std::size_t displaced_bodies_per_job = 16;
 // expire sooner. With a smaller limit more vibrating bodies exceed it; each reset then adds to their travel.
 constexpr Real longest_displacement = 0.01;
 
-void move_on(MovingFrame& frame, Real seconds) {
-    const Vec3 way = seconds * frame.velocity;
-    frame.offset += way;
-    frame.position += way;
-    frame.path += way.norm();
+void advance_frame(MovingFrame& frame, Real seconds) {
+    const Vec3 shift = seconds * frame.velocity;
+    frame.offset += shift;
+    frame.position += shift;
+    frame.path += shift.norm();
 }
 
 /// Mean velocity of the nodes, or zero if the mean is not finite. A frame could have any velocity; with the mean
@@ -62,7 +62,7 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             for (Index k = bodies.body_node_blocks[b].begin; k < bodies.body_node_blocks[b].end; ++k)
                 squared = std::max(squared, bodies.block_displacement_squared[k]);
             const Real displacement = std::sqrt(squared);
-            move_on(out.frame[b], seconds);
+            advance_frame(out.frame[b], seconds);
             out.travel[b] += displacement - out.displacement[b];
             out.displacement[b] = displacement;
             const bool asked = b < out.rebase.size() && out.rebase[b] != 0;

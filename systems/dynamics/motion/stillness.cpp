@@ -13,14 +13,14 @@ namespace {
 
 namespace limits = own_sleep_limits;
 
-/// Number of measurements of the drift (displacement of the nodes) that are due after the fraction `part` of one half
-/// of the sleep time. Measurement i is due at the fraction (i + frac(i golden)) / looks. With equal intervals, an
-/// oscillation whose period is the interval would seem still.
-int looks_due(Real part) {
+/// Number of measurements of the drift (displacement of the nodes) that are due after `fraction` of one
+/// half of the sleep time. Measurement i is due at the fraction (i + frac(i golden)) / measurements. With equal
+/// intervals, an oscillation whose period is the interval would seem still.
+int measurements_due(Real fraction) {
     constexpr Real golden = 0.6180339887498949;
-    const int slot = static_cast<int>(part * limits::looks);
-    const Real place = slot * golden;
-    return slot + (part * limits::looks - slot >= place - std::floor(place));
+    const int slot = static_cast<int>(fraction * limits::measurements);
+    const Real threshold = slot * golden;
+    return slot + (fraction * limits::measurements - slot >= threshold - std::floor(threshold));
 }
 
 Vec3 mean_of(std::span<const Vec3> points) {
@@ -35,7 +35,7 @@ public:
     Stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, const RestOutputs& state)
         : bodies_(bodies), settings_(settings), body_(body), state_(state) {}
 
-    void go_on(Real h) const {
+    void update(Real h) const {
         Real& still = state_.still_time[body_];
         const Real edge = bodies_.mean_edge[body_];
         if (!(bodies_.max_speed[body_] < limits::speed * std::sqrt(settings_.gravity * edge))) {
@@ -51,12 +51,12 @@ public:
         const auto halves = [&](Real time) { return std::floor(time / half); };
         const auto part = [&](Real time) { return time / half - halves(time); };
         const bool ends = halves(still) > halves(before);
-        if (!ends && looks_due(part(still)) == looks_due(part(before))) return;
+        if (!ends && measurements_due(part(still)) == measurements_due(part(before))) return;
         Real &drift = state_.drift[body_], &shape_drift = state_.shape_drift[body_];
         const Real now = drift_now(), shape_now = shape_distance(positions(), part_of_body(state_.still_position));
-        const bool comes_back = drift < 0 || now < drift, goes_one_way = shape_now >= shape_drift;
+        const bool returns = drift < 0 || now < drift, shape_grows = shape_now >= shape_drift;
         const Real furthest = std::max(std::abs(drift), now);
-        drift = comes_back ? -furthest : furthest;
+        drift = returns ? -furthest : furthest;
         shape_drift = std::max(shape_drift, shape_now);
         if (furthest > limits::drift * edge) {
             still = 0;
@@ -64,13 +64,13 @@ public:
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
             const bool first = before < half;
             // A drift that grows with each measurement may be motion at constant speed, on ice or by a motor.
-            const bool goes_on = !comes_back && furthest > limits::noise * edge;
+            const bool drift_grows = !returns && furthest > limits::noise * edge;
             if (!first && furthest > limits::growth * least)
                 still = 0;
-            else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
+            else if (!first && (drift_grows || !is_balanced(half) || !keeps_shape(shape_grows)))
                 still = half;  // half of the sleep time is kept, so that the next half is compared with this one
             state_.drift_before[body_] = furthest;
-            state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
+            state_.creep_before[body_] = shape_grows ? shape_drift : 0;
             begin_half();
         }
     }
@@ -93,12 +93,12 @@ private:
     /// True if the shape varies little about a constant shape and does not creep towards a distant shape. If the change
     /// of shape shrinks by the factor q from one half of the sleep time to the next, the remaining creep is shape_drift
     /// q/(1 - q).
-    bool has_its_shape(bool goes_one_way) const {
+    bool keeps_shape(bool shape_grows) const {
         const Real now = state_.shape_drift[body_], before = state_.creep_before[body_];
         if (now <= limits::noise * bodies_.mean_edge[body_]) return true;
         const Real shape = shape_distance(positions(), part_of_body(bodies_.rest_position));
         if (now > std::max(limits::shape_change * shape, limits::shape_noise * bodies_.mean_edge[body_])) return false;
-        const bool creeps = goes_one_way && before > 0;
+        const bool creeps = shape_grows && before > 0;
         return !creeps || (now < before && now * now <= limits::creep * shape * (before - now));
     }
 
@@ -109,7 +109,7 @@ private:
 
     template <class T>
     std::span<T> part_of_body(std::span<T> column) const {
-        const Range nodes = bodies_.telling_nodes(body_);
+        const Range nodes = bodies_.measured_nodes(body_);
         return column.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     }
     std::span<const Vec3> positions() const { return part_of_body(bodies_.position); }
@@ -120,7 +120,7 @@ private:
     }
     Real drift_now() const {
         Real squared = 0;
-        const Range nodes = bodies_.telling_nodes(body_);
+        const Range nodes = bodies_.measured_nodes(body_);
         for (Index n = nodes.begin; n < nodes.end; ++n)
             squared = std::max(squared, (bodies_.position[n] - state_.still_position[n]).squaredNorm());
         return std::sqrt(squared);
@@ -150,7 +150,7 @@ Real shape_distance(std::span<const Vec3> points, std::span<const Vec3> others) 
 
 void watch_stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, Real h,
                      const RestOutputs& state) {
-    Stillness(bodies, settings, body, state).go_on(h);
+    Stillness(bodies, settings, body, state).update(h);
 }
 
 }  // namespace skerry

@@ -28,7 +28,7 @@ inline constexpr Real shape_change = 8e-3, shape_noise = 1e-4;
 /// direction that slows down.
 inline constexpr Real creep = 3e-3;
 /// Number of measurements of the drift in each half of the sleep time.
-inline constexpr int looks = 8;
+inline constexpr int measurements = 8;
 }  // namespace own_sleep_limits
 
 /// Greatest distance between corresponding points of two lists. Before the comparison one list is moved by the rigid

@@ -16,15 +16,15 @@ namespace {
 constexpr std::size_t watched_per_block = 64;
 
 /// Joins bodies that touch, and bodies that BodyLinks connects (for example by a joint), into sets. Marks bodies that
-/// touch a moving collider in `restless`.
+/// touch a moving collider in `stays_awake`.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
     for (std::size_t c = 0; c < touches.state.size(); ++c) {
         if (touches.state[c] == ContactState::open) continue;
         const Index first = touches.first_body[c], second = touches.second_body[c];
-        if (touches.surface_velocity[c] != Vec3::Zero()) memory.restless[first] = 1;
+        if (touches.surface_velocity[c] != Vec3::Zero()) memory.stays_awake[first] = 1;
         if (second == no_index) continue;
         if (bodies.kind[second] == BodyKind::kinematic) {
-            if (bodies.max_speed[second] != 0) memory.restless[first] = 1;
+            if (bodies.max_speed[second] != 0) memory.stays_awake[first] = 1;
             continue;
         }
         memory.touching.join(first, second);
@@ -33,40 +33,40 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
         memory.touching.join(touches.linked_first[link], touches.linked_second[link]);
 }
 
-void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
+void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, SleepLosses& losses) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
     if (!bodies.held(static_cast<Index>(r))) {  // a held body moves with its attachment, so its energy does not count
-        taken.energy +=
+        losses.energy +=
             (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
-        taken.momentum += state.momentum[r];
+        losses.momentum += state.momentum[r];
     }
     state.momentum[r] = state.angular_momentum[r] = Vec3::Zero();
 }
 
 /// Sets the deformation velocities of an implicit body in its frame to zero.
-void stop_deforming(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
+void stop_deforming(const RestInputs& bodies, std::size_t body, const RestOutputs& state, SleepLosses& losses) {
     const Range rows = bodies.body_implicit[body];
     const bool held = bodies.held(bodies.rigid(body));
     for (Index row = rows.begin; row < rows.end; ++row) {
         const Index n = bodies.nodes[body].begin + row - rows.begin;
         if (bodies.inverse_mass[n] > 0) {
-            taken.energy += bodies.mass[n] * state.deforming[row].squaredNorm() / 2;
-            if (held) taken.momentum += bodies.mass[n] * state.velocity[n];
+            losses.energy += bodies.mass[n] * state.deforming[row].squaredNorm() / 2;
+            if (held) losses.momentum += bodies.mass[n] * state.velocity[n];
         }
         state.deforming[row] = Vec3::Zero();
     }
 }
 
-void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
+void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& state, SleepLosses& losses) {
     const Index rigid = bodies.rigid(body);
     if (rigid != no_index) {
-        stop_rigid(bodies, static_cast<std::size_t>(rigid), state, taken);
-        stop_deforming(bodies, body, state, taken);
+        stop_rigid(bodies, static_cast<std::size_t>(rigid), state, losses);
+        stop_deforming(bodies, body, state, losses);
     }
     for (Index n = bodies.nodes[body].begin; n < bodies.nodes[body].end; ++n) {
         if (bodies.inverse_mass[n] > 0 && rigid == no_index) {
-            taken.energy += bodies.mass[n] * state.velocity[n].squaredNorm() / 2;
-            taken.momentum += bodies.mass[n] * state.velocity[n];
+            losses.energy += bodies.mass[n] * state.velocity[n].squaredNorm() / 2;
+            losses.momentum += bodies.mass[n] * state.velocity[n];
         }
         state.velocity[n] = state.velocity_next[n] = Vec3::Zero();
     }
@@ -140,29 +140,29 @@ void find_still_sets(Executor& executor, const TouchInputs& touches, const RestI
     memory.any_ready = any_ready.load();
     if (!memory.any_ready) return;
     memory.touching.start(count);
-    memory.restless.assign(count, 0);
+    memory.stays_awake.assign(count, 0);
     for (std::size_t b = 0; b < count; ++b)
-        memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] && !is_ready(b);
+        memory.stays_awake[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] && !is_ready(b);
     for (std::size_t a = 0; a < bodies.attached_body.size(); ++a)
-        if (!bodies.attached_motion[a].stands_still()) memory.restless[bodies.attached_body[a]] = 1;
+        if (!bodies.attached_motion[a].stands_still()) memory.stays_awake[bodies.attached_body[a]] = 1;
     for (std::size_t b = 0; b < bodies.driven.size(); ++b)
-        if (bodies.driven[b]) memory.restless[b] = 1;
+        if (bodies.driven[b]) memory.stays_awake[b] = 1;
     join_touching(touches, bodies, memory);
     for (std::size_t b = 0; b < count; ++b)
-        if (memory.restless[b]) memory.restless[memory.touching.root(static_cast<Index>(b))] = 1;
+        if (memory.stays_awake[b]) memory.stays_awake[memory.touching.root(static_cast<Index>(b))] = 1;
 }
 
-TakenByRest rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state) {
-    TakenByRest taken, taken_from_ghosts;
-    if (!memory.any_ready) return taken;
+SleepLosses rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state) {
+    SleepLosses losses, ghost_losses;
+    if (!memory.any_ready) return losses;
     for (std::size_t b = 0; b < bodies.kind.size(); ++b) {
         if (state.asleep[b] || bodies.kind[b] != BodyKind::deformable ||
-            memory.restless[memory.touching.root(static_cast<Index>(b))])
+            memory.stays_awake[memory.touching.root(static_cast<Index>(b))])
             continue;
-        put_to_rest(bodies, b, state, bodies.ghosts.contain(static_cast<Index>(b)) ? taken_from_ghosts : taken);
-        ++taken.bodies;
+        put_to_rest(bodies, b, state, bodies.ghosts.contain(static_cast<Index>(b)) ? ghost_losses : losses);
+        ++losses.bodies;
     }
-    return taken;
+    return losses;
 }
 
 }  // namespace skerry

@@ -137,7 +137,7 @@ struct RestInputs {
 
     /// Nodes that show whether the body moves. Nodes of a round body that are only drawn may be out of date and are
     /// left out.
-    Range telling_nodes(std::size_t b) const {
+    Range measured_nodes(std::size_t b) const {
         return body_core_nodes.empty() ? nodes[b] : step_nodes_of(nodes[b], body_core_nodes[b]);
     }
     /// Row of RigidBodyTable; no_index for a body that is neither rigid nor implicit.
@@ -179,7 +179,7 @@ struct RestOutputs {
 
 /// Energy and momentum removed from the bodies that fall asleep in this step, without ghosts. `bodies`: number of all
 /// bodies that fall asleep, with ghosts.
-struct TakenByRest {
+struct SleepLosses {
     Real energy = 0;               // kinetic energy [J]
     Vec3 momentum = Vec3::Zero();  // [kg m/s]
     Index bodies = 0;
@@ -189,7 +189,7 @@ struct SleepMemory {
     bool any_ready = false;  // true if a body has been still long enough; otherwise there are no sets
     UnionFind touching;      // sets of bodies that touch each other
     // For each body: nonzero if the body must stay awake. For the root of a set: nonzero if any body of the set must.
-    Column<std::uint8_t> restless;
+    Column<std::uint8_t> stays_awake;
 };
 
 /// Counts the time for which each body has been still. If a body has been still long enough, finds the sets of bodies
@@ -200,6 +200,6 @@ void find_still_sets(Executor& executor, const TouchInputs& touches, const RestI
                      const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 
 /// Stops the bodies of each set and puts them to sleep, unless the set must stay awake.
-TakenByRest rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state);
+SleepLosses rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state);
 
 }  // namespace skerry

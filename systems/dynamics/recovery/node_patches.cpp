@@ -114,24 +114,24 @@ ElementsNear::ElementsNear(const ElementCover& cover, std::span<const std::uint8
         if (std::ranges::any_of(cover.tetrahedra.item.subspan(begin, end - begin), is_chosen))
             block.push_back(static_cast<Index>(first / element_lanes));
     }
-    of_tetrahedra = inverted(
-        block.size() * element_lanes, [&](std::size_t place) { return covered(cover, place); }, chosen.size());
+    covering = inverted(
+        block.size() * element_lanes, [&](std::size_t element) { return covered(cover, element); }, chosen.size());
 }
 
-std::span<const Index> ElementsNear::covered(const ElementCover& cover, std::size_t place) const {
+std::span<const Index> ElementsNear::covered(const ElementCover& cover, std::size_t element) const {
     const std::size_t lane =
-        static_cast<std::size_t>(block[place / element_lanes]) * element_lanes + place % element_lanes;
+        static_cast<std::size_t>(block[element / element_lanes]) * element_lanes + element % element_lanes;
     return lane < cover.tetrahedra.size() ? cover.tetrahedra[lane] : std::span<const Index>{};
 }
 
 std::vector<Index> ElementsNear::around(std::span<const Index> tetrahedra) const {
-    std::vector<Index> places;
+    std::vector<Index> elements;
     for (const Index t : tetrahedra) {
-        const std::span<const Index> of = of_tetrahedra[static_cast<std::size_t>(t)];
-        places.insert(places.end(), of.begin(), of.end());
+        const std::span<const Index> covering_elements = covering[static_cast<std::size_t>(t)];
+        elements.insert(elements.end(), covering_elements.begin(), covering_elements.end());
     }
-    sort_once(places);
-    return places;
+    sort_once(elements);
+    return elements;
 }
 
 }  // namespace skerry

@@ -59,15 +59,15 @@ private:
 /// Blocks with elements that cover at least one of the chosen tetrahedra. A *place* p stands for lane p % element_lanes
 /// of the block `block[p / element_lanes]`.
 struct ElementsNear {
-    std::vector<Index> block;     // block numbers, counted from the first block of the body, ascending
-    Ragged<Index> of_tetrahedra;  // by tetrahedron: places of the elements that cover it
+    std::vector<Index> block;  // block numbers, counted from the first block of the body, ascending
+    Ragged<Index> covering;    // by tetrahedron: places of the elements that cover it
 
     ElementsNear() = default;
     /// `chosen`: by tetrahedron, nonzero if it is chosen.
     ElementsNear(const ElementCover& cover, std::span<const std::uint8_t> chosen);
 
     /// Tetrahedra that the element at a place covers; none for an unused lane.
-    std::span<const Index> covered(const ElementCover& cover, std::size_t place) const;
+    std::span<const Index> covered(const ElementCover& cover, std::size_t element) const;
     /// Places of the elements that cover at least one of the tetrahedra, ascending.
     std::vector<Index> around(std::span<const Index> tetrahedra) const;
 };

@@ -10,44 +10,44 @@ namespace skerry {
 namespace {
 
 class Recovery {
-    using Shares = std::span<const RecoveryPlan::Share>;
+    using Terms = std::span<const RecoveryPlan::Term>;
 
     struct Value {
         Mat3 stress = Mat3::Zero(), strain = Mat3::Zero();
     };
 
 public:
-    Recovery(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) of_blocks)
+    Recovery(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) compute_fields)
         : plan_(plan),
           body_(body),
           position_(body.position.subspan(static_cast<std::size_t>(body.first_node))),
           fields_(plan.center.size()) {
-        of_blocks(body.elements, body.blocks, plan.block, body.position, fields_);
+        compute_fields(body.elements, body.blocks, plan.block, body.position, fields_);
         sum_forces();
         std::vector<SurfaceSearch> searches;
         searches.reserve(plan.faces.size());
         for (std::size_t row = 0; row < plan.smooth.size(); ++row)
             if (plan.smooth[row] != no_index) searches.push_back(search_at(row));
         const std::vector<std::optional<Mat3>> gradients = surface_gradients(searches);
-        at_smooth_.reserve(plan.smooth.size());
+        smooth_values_.reserve(plan.smooth.size());
         for (std::size_t row = 0; row < plan.smooth.size(); ++row) {
             const auto f = static_cast<std::size_t>(plan.smooth[row]);
             if (plan.smooth[row] != no_index && gradients[f]) {
                 const Mat3& F = *gradients[f];
-                at_smooth_.push_back({stress(searches[f].material, F) * F.transpose() / F.determinant(),
-                                      (F.transpose() * F - Mat3::Identity()) / 2});
+                smooth_values_.push_back({stress(searches[f].material, F) * F.transpose() / F.determinant(),
+                                          (F.transpose() * F - Mat3::Identity()) / 2});
             } else {
-                at_smooth_.push_back(sum(plan.strained[row], plan.volumetric[row]));
+                smooth_values_.push_back(sum(plan.strained[row], plan.volumetric[row]));
             }
         }
     }
 
     /// Value at node `i` of the plan.
     Value at(std::size_t i) const {
-        if (plan_.smooth_of[i] != no_index) return at_smooth_[static_cast<std::size_t>(plan_.smooth_of[i])];
+        if (plan_.smooth_of[i] != no_index) return smooth_values_[static_cast<std::size_t>(plan_.smooth_of[i])];
         Value value = sum(plan_.strained_around[i], plan_.volumetric_around[i]);
         for (const auto [from, factor] : plan_.donors[i]) {
-            const Value& donor = at_smooth_[static_cast<std::size_t>(from)];
+            const Value& donor = smooth_values_[static_cast<std::size_t>(from)];
             value.stress += factor * donor.stress;
             value.strain += factor * donor.strain;
         }
@@ -55,32 +55,32 @@ public:
     }
 
 private:
-    std::size_t block_of(std::size_t place) const {
-        return static_cast<std::size_t>(body_.blocks.begin + plan_.block[place / element_lanes]);
+    std::size_t block_of(std::size_t element) const {
+        return static_cast<std::size_t>(body_.blocks.begin + plan_.block[element / element_lanes]);
     }
 
     /// For each node that needs it, computes the external force that would balance the elements around the node [N].
     void sum_forces() {
         force_.assign(plan_.force_count, Vec3::Zero());
         for (const auto [at, corner, row] : plan_.corners) {
-            const auto place = static_cast<std::size_t>(at);
-            const std::size_t block = block_of(place), lane = place % element_lanes;
-            const ElementGradient& of = body_.elements.nodes_of(block).gradient[corner];
+            const auto element = static_cast<std::size_t>(at);
+            const std::size_t block = block_of(element), lane = element % element_lanes;
+            const ElementGradient& gradient = body_.elements.nodes_of(block).gradient[corner];
             force_[static_cast<std::size_t>(row)] +=
-                fields_[place].nominal_stress *
-                (body_.elements.volume[block][lane] * Vec3(of[0][lane], of[1][lane], of[2][lane]));
+                fields_[element].nominal_stress *
+                (body_.elements.volume[block][lane] * Vec3(gradient[0][lane], gradient[1][lane], gradient[2][lane]));
         }
     }
 
-    Value sum(Shares strained, Shares volumetric) const {
+    Value sum(Terms strained, Terms volumetric) const {
         Value value;
-        for (const auto [place, factor] : strained) {
-            const ElementFields& of = fields_[static_cast<std::size_t>(place)];
-            value.stress += factor * of.cauchy_stress;
-            value.strain += factor * of.strain;
+        for (const auto [element, factor] : strained) {
+            const ElementFields& fields = fields_[static_cast<std::size_t>(element)];
+            value.stress += factor * fields.cauchy_stress;
+            value.strain += factor * fields.strain;
         }
-        for (const auto [place, factor] : volumetric)
-            value.stress += factor * fields_[static_cast<std::size_t>(place)].cauchy_stress;
+        for (const auto [element, factor] : volumetric)
+            value.stress += factor * fields_[static_cast<std::size_t>(element)].cauchy_stress;
         return value;
     }
 
@@ -97,9 +97,9 @@ private:
         force -= face.inner_share * inner_force;
         const SurfaceAround& around = face.around;
         Vec3 start = Vec3::Zero();
-        for (const auto [place, factor] : plan_.strained[row])
-            start += fields_[static_cast<std::size_t>(place)].gradient * (factor * around.normal);
-        return {body_.elements.whole_material_of(block_of(static_cast<std::size_t>(face.place))), &around,
+        for (const auto [element, factor] : plan_.strained[row])
+            start += fields_[static_cast<std::size_t>(element)].gradient * (factor * around.normal);
+        return {body_.elements.whole_material_of(block_of(static_cast<std::size_t>(face.element))), &around,
                 surface_stretch(plan_.triangles[f], position_), force / around.area.norm(), start};
     }
 
@@ -108,13 +108,14 @@ private:
     std::span<const Vec3> position_;     // nodes of the body [m]
     std::vector<ElementFields> fields_;  // by place
     std::vector<Vec3> force_;            // by row of a node whose force is needed [N]
-    std::vector<Value> at_smooth_;       // by row of RecoveryPlan::smooth
+    std::vector<Value> smooth_values_;   // by row of RecoveryPlan::smooth
 };
 
 }  // namespace
 
-NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) of_blocks) {
-    const Recovery recovery(plan, body, of_blocks);
+NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body,
+                         decltype(&element_fields) compute_fields) {
+    const Recovery recovery(plan, body, compute_fields);
     NodeFields fields;
     fields.stress.reserve(plan.nodes.size());
     fields.strain.reserve(plan.nodes.size());

@@ -25,7 +25,7 @@ struct NodeFields {
 };
 
 /// Recovers the fields at the nodes of the plan, in their order. Only elements near these nodes are evaluated, and the
-/// values do not depend on the choice of nodes. `of_blocks`: the kernel element_fields.
+/// values do not depend on the choice of nodes. `compute_fields`: the kernel element_fields.
 ///
 /// - Inner node: least-squares fit of the stresses of the elements around the node, quadratic for smoothed elements and
 ///   linear for others. Elements with only the volumetric part of the stress have a linear fit of their own, which is
@@ -34,6 +34,6 @@ struct NodeFields {
 /// - Node at an edge, a corner or an interface of materials: linear fit of the values at the nodes within two rings of
 ///   tetrahedra, for each material. The results of the materials are averaged by volume.
 /// - Where too few values determine a fit: mean over the elements around the node.
-NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) of_blocks);
+NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) compute_fields);
 
 }  // namespace skerry

@@ -34,7 +34,7 @@ struct RecoveryPlan {
     std::vector<Vec3> center;  // by place: centroid of the tetrahedra that the element covers [m]
 
     /// Term of a weighted sum: `factor` times the value with the index `from`.
-    struct Share {
+    struct Term {
         Index from;
         Real factor;
     };
@@ -45,11 +45,11 @@ struct RecoveryPlan {
     // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
     // Newton's method and replaces its result if the method fails. `strained`: elements with strain. `volumetric`:
     // elements that have only the volumetric part of the stress.
-    Ragged<Share> strained, volumetric;
+    Ragged<Term> strained, volumetric;
 
     struct Face {
         SurfaceAround around;
-        Index place;  // place of one element around the node; gives the material
+        Index element;  // place of one element around the node; gives the material
         // Volume of the node (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes in the
         // tetrahedra around it; 0 if there are no inner nodes.
         Real inner_share;
@@ -61,7 +61,7 @@ struct RecoveryPlan {
     Ragged<Index> force;
     /// Corner of an element at a node whose force is needed.
     struct Corner {
-        Index place, corner;
+        Index element, corner;
         Index row;  // number of the node among those whose force is needed
     };
     std::vector<Corner> corners;  // ascending by place
@@ -71,7 +71,7 @@ struct RecoveryPlan {
     std::vector<Index> smooth_of;
     // Terms of the values of nodes with no_index in `smooth_of`. `donors`: from rows of `smooth`. `strained_around`,
     // `volumetric_around`: from places, only for materials with too few donors for a fit.
-    Ragged<Share> donors, strained_around, volumetric_around;
+    Ragged<Term> donors, strained_around, volumetric_around;
 };
 
 RecoveryPlan plan_recovery(const RecoveryMesh& body, std::span<const Index> nodes);

@@ -106,15 +106,15 @@ void search_lanes(Law law, std::span<const SurfaceSearch> searches, std::span<st
     LaneMat3<Real8> base;
     LaneVec3<Real8> across, normal, traction, b;
     for (int l = 0; l < static_cast<int>(element_lanes); ++l) {
-        const SurfaceSearch& of = searches[std::min(static_cast<std::size_t>(l), searches.size() - 1)];
-        const Mat3 own_base = of.stretch * of.around->inverse;
+        const SurfaceSearch& search = searches[std::min(static_cast<std::size_t>(l), searches.size() - 1)];
+        const Mat3 own_base = search.stretch * search.around->inverse;
         set_lane(base.c0, l, own_base.col(0));
         set_lane(base.c1, l, own_base.col(1));
         set_lane(base.c2, l, own_base.col(2));
-        set_lane(across, l, of.around->across);
-        set_lane(normal, l, of.around->normal);
-        set_lane(traction, l, of.traction);
-        set_lane(b, l, of.start);
+        set_lane(across, l, search.around->across);
+        set_lane(normal, l, search.around->normal);
+        set_lane(traction, l, search.traction);
+        set_lane(b, l, search.start);
     }
     LaneMat3<Real8> F;
     for (int pass = 0; pass < most_newton_passes; ++pass) {

@@ -17,11 +17,11 @@ struct RigidField {
 };
 
 /// Maps rest positions of the nodes of a rigid body to world positions.
-struct RigidPlace {
+struct RestToWorld {
     Vec3 center, rest_center;
     Mat3 from_mesh;
 
-    RigidPlace(const RigidBodies& bodies, std::size_t r, const Vec3& at, const Mat3& rotation, const Mat3& axes)
+    RestToWorld(const RigidBodies& bodies, std::size_t r, const Vec3& at, const Mat3& rotation, const Mat3& axes)
         : center(at), rest_center(bodies.rest_center[r]), from_mesh(rotation * axes.transpose()) {}
     Vec3 of(const Vec3& rest_position) const { return center + from_mesh * (rest_position - rest_center); }
 };
@@ -129,9 +129,9 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
             out.rotation_next[r] = turn_of_step(shape.rotation(r), shape.moments(r),
                                                 angular_momentum_after(bodies, impulses, r), impulses.push_spin[r], h);
         }
-        const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r], shape.axes(r));
+        const RestToWorld pose(bodies, r, out.center_next[r], out.rotation_next[r], shape.axes(r));
         for_each_node(bodies.step_nodes(r),
-                      [&](std::size_t n) { out.velocity_next[n] = (place.of(shape.at(n)) - position[n]) / h; });
+                      [&](std::size_t n) { out.velocity_next[n] = (pose.of(shape.at(n)) - position[n]) / h; });
     });
     return true;
 }
@@ -145,7 +145,7 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         const Vec3 momentum = momentum_after(bodies, impulses, r);
         const Vec3 angular_momentum = angular_momentum_after(bodies, impulses, r);
         const ShapeNext shape(bodies, elastic, r);
-        const RigidPlace place(bodies, r, center_next[r], rotation_next[r], shape.axes(r));
+        const RestToWorld pose(bodies, r, center_next[r], rotation_next[r], shape.axes(r));
         const RigidField field{center_next[r], momentum / bodies.mass[r],
                                spin_of(rotation_next[r], shape.moments(r), angular_momentum)};
         out.center[r] = center_next[r];
@@ -159,7 +159,7 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
             out.axes[r] = elastic.axes[r];
         }
         for_each_node(draws_late ? bodies.step_nodes(r) : bodies.nodes(r), [&](std::size_t n) {
-            out.position[n] = place.of(shape.at(n));
+            out.position[n] = pose.of(shape.at(n));
             if (!shape.deforms()) {
                 out.velocity[n] = field.at(out.position[n]);
                 return;
@@ -167,7 +167,7 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
             const std::size_t row = shape.row(n);
             out.displacement[row] = elastic.displacement[row];
             out.displacement_velocity[row] = elastic.velocity[row];
-            const Vec3 deforming = place.from_mesh * elastic.velocity[row];
+            const Vec3 deforming = pose.from_mesh * elastic.velocity[row];
             if (!led)
                 out.velocity[n] = field.at(out.position[n]) + deforming;
             else if (bodies.inverse_mass[n] > 0)  // held nodes already have their prescribed velocity
@@ -182,11 +182,11 @@ void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resti
     for_each_body(executor, bodies, [&](std::size_t r) {
         const Range drawn{bodies.step_nodes(r).end, bodies.nodes(r).end};
         if (drawn.size() == 0 || (bodies.asleep(r) && !resting)) return;
-        const RigidPlace place(bodies, r, bodies.center[r], bodies.rotation[r], bodies.axes[r]);
+        const RestToWorld pose(bodies, r, bodies.center[r], bodies.rotation[r], bodies.axes[r]);
         const RigidField field{bodies.center[r], bodies.momentum[r] / bodies.mass[r],
                                spin_of(bodies.rotation[r], bodies.moments[r], bodies.angular_momentum[r])};
         for_each_node(drawn, [&](std::size_t n) {
-            position[n] = place.of(bodies.rest_position[n]);
+            position[n] = pose.of(bodies.rest_position[n]);
             velocity[n] = field.at(position[n]);
         });
     });

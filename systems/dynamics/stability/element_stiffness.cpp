@@ -243,9 +243,9 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that the eigenvalue exceeds `enough`
-/// in some lanes, probably by little. The greatest of these bounds is at most 0.3 % too large.
-BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that the eigenvalue exceeds
+/// `threshold` in some lanes, probably by little. The greatest of these bounds is at most 0.3 % too large.
+BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real threshold) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)
             if (!all(is_below(A[part], volume[part], KernelReal{} + limit))) return false;
@@ -256,8 +256,8 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
         reals.fill(KernelReal{} + x);
         return reals;
     };
-    Real low = enough, step = 1.01;
-    for (int halvings = 2; enough > 0 && halvings < 6; ++halvings, low *= step, step *= step)
+    Real low = threshold, step = 1.01;
+    for (int halvings = 2; threshold > 0 && halvings < 6; ++halvings, low *= step, step *= step)
         if (all_below(low * step)) return bisected(A, volume, everywhere(low), everywhere(low * step), halvings);
     BlockReals least, most;
     for (std::size_t part = 0; part < kernel_parts; ++part) {
@@ -268,16 +268,17 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     return bisected(A, volume, least, most, 6);
 }
 
-/// Upper bound on the largest eigenvalue of volume * A in each lane: the least of the limits enough, 1.1 enough, 1.21
-/// enough ... that is above the eigenvalue. The bound is infinite if all limits are below the eigenvalue.
-BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
+/// Upper bound on the largest eigenvalue of volume * A in each lane: the least of the limits threshold, 1.1
+/// threshold, 1.21 threshold ... that is above the eigenvalue. The bound is infinite if all limits are below the
+/// eigenvalue.
+BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real threshold) {
     constexpr Real growth = 1.1;
     constexpr int steps = 25;
     BlockReals bounds;
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         const KernelReal unknown = KernelReal{} + infinity;
         KernelReal& bound = bounds[part] = unknown;
-        Real limit = enough;
+        Real limit = threshold;
         for (int i = 0; i < steps && !all(bound < unknown); ++i, limit *= growth) {
             const auto below = is_below(A[part], volume[part], KernelReal{} + limit);
             bound = below & (bound == unknown) ? KernelReal{} + limit : bound;
@@ -289,7 +290,7 @@ BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real 
 }  // namespace
 
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
-                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough,
+                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real threshold,
                               Sharpness sharpness, const FramePart* frame) {
     const bool relaxes = viscous.moduli.mu > 0 || viscous.moduli.lambda > 0 || viscous.moduli.bulk > 0;
     BlockMatrices A;
@@ -307,17 +308,17 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
         }
     });
     // All lanes of the block are tested together, so that the register width changes no bit.
-    bool below = enough > 0;
+    bool below = threshold > 0;
     for (std::size_t part = 0; below && part < kernel_parts; ++part)
-        below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + enough));
-    if (below) return Real8{} + enough;
+        below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + threshold));
+    if (below) return Real8{} + threshold;
     if (sharpness == Sharpness::compared) return Real8{} + infinity;
     BlockReals volumes, bounds;
     for (std::size_t part = 0; part < kernel_parts; ++part) volumes[part] = lanes_in(volume, part);
     if (sharpness == Sharpness::bisected)
-        bounds = bisected_bound(A, volumes, enough);
+        bounds = bisected_bound(A, volumes, threshold);
     else if (sharpness == Sharpness::stepped)
-        bounds = stepped_bound(A, volumes, enough);
+        bounds = stepped_bound(A, volumes, threshold);
     else
         for (std::size_t part = 0; part < kernel_parts; ++part)
             bounds[part] = volumes[part] * largest_eigenvalue_bound(A[part]);

@@ -29,9 +29,9 @@ struct FramePart {
 enum class Sharpness {
     trace,     // the bound is at most 15 % too large
     bisected,  // the bound is at most 0.3 % too large, but takes twice the time of `trace`
-    compared,  // the bound is infinite unless the eigenvalues of all eight lanes are below `enough`
-    // The bound is one of `enough`, 1.1 `enough`, 1.21 `enough` ... and at most 10 % too large. It is infinite beyond
-    // ten times `enough`.
+    compared,  // the bound is infinite unless the eigenvalues of all eight lanes are below `threshold`
+    // The bound is one of `threshold`, 1.1 `threshold`, 1.21 `threshold` ... and at most 10 % too large. It is infinite
+    // beyond ten times `threshold`.
     stepped
 };
 /// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]; 0 in lanes without
@@ -42,9 +42,10 @@ enum class Sharpness {
 /// of `Q` (mass_forms.h). With `frame` the mass form has the additional term of FramePart.
 ///
 /// If the material law has a corotational frame, `q` is the initial guess of the frame and receives the frame found. If
-/// all eight lanes are below `enough` [1/s^2], all lanes get `enough` instead, in a tenth of the time.
+/// all eight lanes are below `threshold` [1/s^2], all lanes get `threshold` instead, in a tenth of the time.
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
-                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,
-                              Sharpness sharpness = Sharpness::trace, const FramePart* frame = nullptr);
+                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q,
+                              Real threshold = 0, Sharpness sharpness = Sharpness::trace,
+                              const FramePart* frame = nullptr);
 
 }  // namespace skerry

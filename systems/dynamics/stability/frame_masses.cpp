@@ -51,8 +51,8 @@ public:
         number(position.subspan(static_cast<std::size_t>(first_node_), count));
         root_.resize(count);
         for (std::size_t n = 0; n < count; ++n) {
-            const Real of_node = mass[static_cast<std::size_t>(first_node_) + n];
-            root_[n] = of_node > 0 ? 1 / std::sqrt(of_node) : 0;
+            const Real node_mass = mass[static_cast<std::size_t>(first_node_) + n];
+            root_[n] = node_mass > 0 ? 1 / std::sqrt(node_mass) : 0;
         }
     }
 
@@ -108,8 +108,8 @@ public:
     void share(Real bound, std::span<FrameMass> mass) const {
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
-            const auto [shear, volumetric] = moduli_.of(block);
-            const Real8 volume = load(elements_.volume[block]), weighty = moduli_.of_explicit(block) * volume;
+            const auto [shear, volumetric] = moduli_.moduli(block);
+            const Real8 volume = load(elements_.volume[block]), weighty = moduli_.explicit_mask(block) * volume;
             const Real8 one = Real8{} + 1.0, none = Real8{} + form_of_implicit;
             const Real8 stiffness = weighty > 0.0 ? Real8(volume * shear) : one;
             store(Real8(weighty > 0.0 ? Real8(bound / stiffness) : volume > 0.0 ? none : Real8{}), mass[i][0]);
@@ -143,9 +143,9 @@ private:
             const Element e = element_of(nodes, corner.block, corner.lane);
             const Vec3 g = root_[e.node(corner.corner)] * e.gradient(corner.corner);
             for (Index j = 0; j < e.count; ++j) {
-                const std::size_t of_other = place_[e.node(j)];
-                if (of_other < place) continue;
-                const std::size_t column = 3 * (of_other - place);
+                const std::size_t other_node = place_[e.node(j)];
+                if (other_node < place) continue;
+                const std::size_t column = 3 * (other_node - place);
                 const Vec3 other = root_[e.node(j)] * e.gradient(j);
                 const Real same = e.shear * product_of(g, other);
                 for (std::size_t i = 0; i < 3; ++i)
@@ -181,8 +181,8 @@ private:
         weights_.resize(static_cast<std::size_t>(blocks_.size()));
         for (std::size_t i = 0; i < weights_.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
-            const auto [shear, volumetric] = moduli_.of(block);
-            const Real8 volume = moduli_.of_explicit(block) * load(elements_.volume[block]);
+            const auto [shear, volumetric] = moduli_.moduli(block);
+            const Real8 volume = moduli_.explicit_mask(block) * load(elements_.volume[block]);
             store(volume, weights_[i].volume);
             store(Real8(volume * shear), weights_[i].shear);
             store(Real8(volume * volumetric), weights_[i].volumetric);

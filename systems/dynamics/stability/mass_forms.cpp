@@ -160,7 +160,7 @@ public:
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
-            const Real8 weighty = moduli_.of_explicit(first_block() + i) * volume, none = Real8{} + form_of_implicit;
+            const Real8 weighty = moduli_.explicit_mask(first_block() + i) * volume, none = Real8{} + form_of_implicit;
             Symmetric Q = Real8(Real8{} + bound) * inverse_of(load_form(weight_[i]));
             for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz}) *entry = weighty > 0.0 ? *entry : volume > 0.0 ? none : Real8{};
             for (Real8* entry : {&Q.xy, &Q.yz, &Q.zx}) *entry = weighty > 0.0 ? *entry : Real8{};
@@ -190,13 +190,13 @@ private:
     /// implicit elements.
     void weigh() {
         for (std::size_t i = 0; i < form_.size(); ++i) {
-            const auto [shear, volumetric] = moduli_.of(first_block() + i);
+            const auto [shear, volumetric] = moduli_.moduli(first_block() + i);
             const Symmetric Z = load_form(form_[i]);
             Symmetric W = Real8(volumetric * Z.trace()) * inverse_of(Z);
             W.xx += shear;
             W.yy += shear;
             W.zz += shear;
-            store_form(moduli_.of_explicit(first_block() + i) * load(elements_.volume[first_block() + i]) * W,
+            store_form(moduli_.explicit_mask(first_block() + i) * load(elements_.volume[first_block() + i]) * W,
                        weight_[i]);
         }
     }
@@ -298,23 +298,24 @@ private:
     /// shares of elements (find_mass_shares in stable_step.h).
     void share(std::vector<ElementGroup>& groups) {
         constexpr int rounds = 4, products = 8;
-        std::vector<Real> of_nodes(vector_.size()), share(groups.size(), 1);
+        std::vector<Real> node_diagonal(vector_.size()), share(groups.size(), 1);
         for (ElementGroup& group : groups) {
             add_diagonal(group);
             for (const Index n : group.node) group.vector.push_back(vector_[static_cast<std::size_t>(n)]);
         }
         for (int round = 0; round < rounds; ++round) {
-            std::ranges::fill(of_nodes, Real{0});
+            std::ranges::fill(node_diagonal, Real{0});
             for (std::size_t g = 0; g < groups.size(); ++g)
                 for (std::size_t i = 0; i < groups[g].node.size(); ++i)
-                    of_nodes[static_cast<std::size_t>(groups[g].node[i])] += share[g] * groups[g].diagonal[i];
+                    node_diagonal[static_cast<std::size_t>(groups[g].node[i])] += share[g] * groups[g].diagonal[i];
             Real highest = 0;
             for (std::size_t g = 0; g < groups.size(); ++g) {
                 ElementGroup& group = groups[g];
                 group.mass.resize(group.node.size());
                 for (std::size_t i = 0; i < group.node.size(); ++i) {
                     const auto n = static_cast<std::size_t>(group.node[i]);
-                    group.mass[i] = of_nodes[n] > 0 ? mass_[n] * (share[g] * group.diagonal[i] / of_nodes[n]) : 0;
+                    group.mass[i] =
+                        node_diagonal[n] > 0 ? mass_[n] * (share[g] * group.diagonal[i] / node_diagonal[n]) : 0;
                 }
                 group.highest = highest_of(group, products);
                 highest = std::max(highest, group.highest);
@@ -347,10 +348,10 @@ private:
             add_product(group.blocks);
             Real4 energy{}, size{};
             for (std::size_t i = 0; i < group.node.size(); ++i) {
-                const Real4& of = product_[static_cast<std::size_t>(group.node[i])];
-                energy += group.vector[i] * of;
+                const Real4& product = product_[static_cast<std::size_t>(group.node[i])];
+                energy += group.vector[i] * product;
                 size += group.mass[i] * (group.vector[i] * group.vector[i]);
-                group.vector[i] = group.mass[i] > 0 ? of / group.mass[i] : Real4{};
+                group.vector[i] = group.mass[i] > 0 ? product / group.mass[i] : Real4{};
             }
             highest = 0;
             for (int v = 0; v < 4; ++v)
@@ -382,11 +383,11 @@ private:
         return matrix;
     }
     void add_row(const GroupMatrix& matrix, std::size_t row, Real* to) const {
-        for (const ElementCorner& of : matrix.corners[row]) {
-            const std::size_t l = of.lane;
-            const ElementForm& w = weight_[of.block - first_block()];
-            const BlockNodes nodes = elements_.nodes_of(of.block);
-            const ElementGradient& own = nodes.gradient[of.corner];
+        for (const ElementCorner& corner : matrix.corners[row]) {
+            const std::size_t l = corner.lane;
+            const ElementForm& w = weight_[corner.block - first_block()];
+            const BlockNodes nodes = elements_.nodes_of(corner.block);
+            const ElementGradient& own = nodes.gradient[corner.corner];
             const Real scale = matrix.scale[row], x = scale * own[0][l], y = scale * own[1][l], z = scale * own[2][l];
             const Real wx = w[0][l] * x + w[3][l] * y + w[5][l] * z, wy = w[3][l] * x + w[1][l] * y + w[4][l] * z,
                        wz = w[5][l] * x + w[4][l] * y + w[2][l] * z;
@@ -417,11 +418,11 @@ private:
 void find_mass_forms(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, Real most_products, std::span<ElementForm> form) {
     SKERRY_CHECK(form.size() == static_cast<std::size_t>(blocks.size()));
-    const Range of_body = without_guards(elements, blocks);
-    std::ranges::fill(form.subspan(static_cast<std::size_t>(of_body.size())), ElementForm{});
-    form = form.first(static_cast<std::size_t>(of_body.size()));
-    if (of_body.size() == 0) return;
-    FormSearch search(elements, of_body, position, mass, most_products, form);
+    const Range element_blocks = without_guards(elements, blocks);
+    std::ranges::fill(form.subspan(static_cast<std::size_t>(element_blocks.size())), ElementForm{});
+    form = form.first(static_cast<std::size_t>(element_blocks.size()));
+    if (element_blocks.size() == 0) return;
+    FormSearch search(elements, element_blocks, position, mass, most_products, form);
     search.choose();
     const Real bound = search.bound();
     if (bound > 0 && std::isfinite(bound))

@@ -14,19 +14,19 @@ RestModuli::RestModuli(const ElementInputs& elements, Range blocks, Real longer)
         const MaterialConstants material = elements.material_of(b);
         stiffest_ = std::max({stiffest_, 2 * material.shear_modulus, material.lame_lambda});
         if (elements.own_frequency.empty()) continue;
-        const Real8 own = of_explicit(b) * load(elements.own_frequency[b]);
+        const Real8 own = explicit_mask(b) * load(elements.own_frequency[b]);
         for (std::size_t l = 0; l < element_lanes; ++l) fastest = std::max<Real>(fastest, own[l]);
     }
     if (fastest > 0) relaxing_step_ = longer * step_times_frequency / fastest;
 }
 
-Real8 RestModuli::of_explicit(std::size_t block) const {
+Real8 RestModuli::explicit_mask(std::size_t block) const {
     const Real8 one = Real8{} + 1.0;
     return elements_.implicit_modulus.empty() ? one
                                               : Real8(load(elements_.implicit_modulus[block]) > 0.0 ? Real8{} : one);
 }
 
-RestModuli::Moduli RestModuli::of(std::size_t block) const {
+RestModuli::Moduli RestModuli::moduli(std::size_t block) const {
     // Least shear modulus, as a fraction of the greatest modulus. With it even elements without stiffness get some
     // mass.
     constexpr Real least = 1e-9;
@@ -57,10 +57,10 @@ void sort_along(std::span<const Vec3> position, std::span<Index> nodes) {
     });
 }
 
-void BandDecomposition::load_group(const BandMatrix& matrix, std::size_t of_group, Real limit) {
-    const std::size_t first = of_group * matrix.group;
+void BandDecomposition::load_group(const BandMatrix& matrix, std::size_t group_index, Real limit) {
+    const std::size_t first = group_index * matrix.group;
     rows_of_group_.assign(matrix.group * matrix.width, 0);
-    matrix.add_rows(of_group, rows_of_group_.data(), matrix.width);
+    matrix.add_rows(group_index, rows_of_group_.data(), matrix.width);
     for (std::size_t i = 0; i < matrix.group; ++i) {
         Real* const to = row(first + i);
         std::fill_n(to - (first + i) % row_step, stride_, Real{0});
@@ -79,28 +79,31 @@ bool BandDecomposition::Pivots::reach(std::size_t r) const {
     return false;
 }
 
-void BandDecomposition::take(const Pivots& of, std::size_t r) {
-    const std::size_t first = r - r % row_step, count = (of.end - first + row_step - 1) / row_step * row_step;
-    const Real *const a = of.column(0, first), *const b = of.column(1, first), *const c = of.column(2, first),
-                      *const d = of.column(3, first);
-    const Real of_a = of.factor(0, r), of_b = of.factor(1, r), of_c = of.factor(2, r), of_d = of.factor(3, r);
-    Real* const to = row(r) - r % row_step;
+void BandDecomposition::subtract_pivots(const Pivots& pivot, std::size_t r) {
+    const std::size_t first = r - r % row_step, count = (pivot.end - first + row_step - 1) / row_step * row_step;
+    const Real *const a = pivot.column(0, first), *const b = pivot.column(1, first), *const c = pivot.column(2, first),
+                      *const d = pivot.column(3, first);
+    const Real factor_a = pivot.factor(0, r), factor_b = pivot.factor(1, r), factor_c = pivot.factor(2, r),
+               factor_d = pivot.factor(3, r);
+    Real* const target = row(r) - r % row_step;
 #pragma omp simd
-    for (std::size_t j = 0; j < count; ++j) to[j] = (((to[j] - of_a * a[j]) - of_b * b[j]) - of_c * c[j]) - of_d * d[j];
+    for (std::size_t j = 0; j < count; ++j)
+        target[j] = (((target[j] - factor_a * a[j]) - factor_b * b[j]) - factor_c * c[j]) - factor_d * d[j];
 }
 
-void BandDecomposition::take_from_two(const Pivots& of, std::size_t r) {
-    const std::size_t first = r - r % row_step, count = (of.end - first + row_step - 1) / row_step * row_step;
-    const Real *const a = of.column(0, first), *const b = of.column(1, first), *const c = of.column(2, first),
-                      *const d = of.column(3, first);
-    const Real of_a = of.factor(0, r), of_b = of.factor(1, r), of_c = of.factor(2, r), of_d = of.factor(3, r);
-    const Real next_a = of.factor(0, r + 1), next_b = of.factor(1, r + 1), next_c = of.factor(2, r + 1),
-               next_d = of.factor(3, r + 1);
-    Real *const to = row(r) - r % row_step, *const next = row(r + 1) - (r + 1) % row_step;
+void BandDecomposition::subtract_pivots_from_two(const Pivots& pivot, std::size_t r) {
+    const std::size_t first = r - r % row_step, count = (pivot.end - first + row_step - 1) / row_step * row_step;
+    const Real *const a = pivot.column(0, first), *const b = pivot.column(1, first), *const c = pivot.column(2, first),
+                      *const d = pivot.column(3, first);
+    const Real factor_a = pivot.factor(0, r), factor_b = pivot.factor(1, r), factor_c = pivot.factor(2, r),
+               factor_d = pivot.factor(3, r);
+    const Real next_a = pivot.factor(0, r + 1), next_b = pivot.factor(1, r + 1), next_c = pivot.factor(2, r + 1),
+               next_d = pivot.factor(3, r + 1);
+    Real *const target = row(r) - r % row_step, *const next_row = row(r + 1) - (r + 1) % row_step;
 #pragma omp simd
     for (std::size_t j = 0; j < count; ++j) {
-        to[j] = (((to[j] - of_a * a[j]) - of_b * b[j]) - of_c * c[j]) - of_d * d[j];
-        next[j] = (((next[j] - next_a * a[j]) - next_b * b[j]) - next_c * c[j]) - next_d * d[j];
+        target[j] = (((target[j] - factor_a * a[j]) - factor_b * b[j]) - factor_c * c[j]) - factor_d * d[j];
+        next_row[j] = (((next_row[j] - next_a * a[j]) - next_b * b[j]) - next_c * c[j]) - next_d * d[j];
     }
 }
 
@@ -125,9 +128,9 @@ bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
             // subtract multiples of the earlier pivot rows from this pivot row
             for (std::size_t before = 0; before < p; ++before) {
                 const Real factor = pivot.factor(before, k + p);
-                const Real* const of = pivot.column(before, k + p);
+                const Real* const earlier = pivot.column(before, k + p);
 #pragma omp simd
-                for (std::size_t j = 0; j < pivot.end - (k + p); ++j) own[j] -= factor * of[j];
+                for (std::size_t j = 0; j < pivot.end - (k + p); ++j) own[j] -= factor * earlier[j];
             }
             if (!(own[0] > rounding)) return false;
             pivot.inverse[p] = 1 / own[0];
@@ -138,11 +141,11 @@ bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
             if (!pivot.reach(r)) continue;
             use(r);
             if (r % row_step == row_step - 1 || r + 1 == pivot.end || !pivot.reach(r + 1)) {
-                take(pivot, r);
+                subtract_pivots(pivot, r);
                 continue;
             }
             use(r + 1);
-            take_from_two(pivot, r++);
+            subtract_pivots_from_two(pivot, r++);
         }
     }
     return true;

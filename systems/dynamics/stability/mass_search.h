@@ -32,12 +32,12 @@ public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
 
     /// 1 for an explicit element; 0 for an implicit element, which belongs to a cluster and gets no mass share.
-    Real8 of_explicit(std::size_t block) const;
+    Real8 explicit_mask(std::size_t block) const;
 
     struct Moduli {
         Real8 shear, volumetric;  // moduli 2 mu and lambda [Pa]
     };
-    Moduli of(std::size_t block) const;
+    Moduli moduli(std::size_t block) const;
 
 private:
     const ElementInputs& elements_;
@@ -55,17 +55,17 @@ struct ElementCorner {
     Index corner;
 };
 
-/// Lists the element corners at each node, in the order of elements. `places`: number of nodes. for_each_corner(visit)
-/// must call visit(place, corner) for all corners, in the order of elements; `place` is the number of the node.
-inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
+/// Lists the element corners at each node, in the order of elements. `nodes`: number of nodes. for_each_corner(visit)
+/// must call visit(node, corner) for all corners, in the order of elements; `node` is the number of the node.
+inline Ragged<ElementCorner> corners_at(std::size_t nodes, auto&& for_each_corner) {
     Ragged<ElementCorner> corners;
-    corners.offset.resize(places + 1);
-    for_each_corner([&](std::size_t place, const ElementCorner&) { ++corners.offset[place + 1]; });
-    for (std::size_t i = 0; i < places; ++i) corners.offset[i + 1] += corners.offset[i];
-    corners.item.resize(static_cast<std::size_t>(corners.offset[places]));
+    corners.offset.resize(nodes + 1);
+    for_each_corner([&](std::size_t node, const ElementCorner&) { ++corners.offset[node + 1]; });
+    for (std::size_t i = 0; i < nodes; ++i) corners.offset[i + 1] += corners.offset[i];
+    corners.item.resize(static_cast<std::size_t>(corners.offset[nodes]));
     std::vector<Index> next(corners.offset.begin(), corners.offset.end());
-    for_each_corner([&](std::size_t place, const ElementCorner& corner) {
-        corners.item[static_cast<std::size_t>(next[place]++)] = corner;
+    for_each_corner([&](std::size_t node, const ElementCorner& corner) {
+        corners.item[static_cast<std::size_t>(next[node]++)] = corner;
     });
     return corners;
 }
@@ -78,7 +78,7 @@ struct BandMatrix {
     std::size_t group;  // number of rows per group
     /// Adds the entries of the rows of a group to `rows`, which contains zeros. Each row begins `stride` numbers after
     /// the previous row.
-    FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
+    FunctionRef<void(std::size_t group_index, Real* rows, std::size_t stride)> add_rows;
 };
 
 /// Tests if limit I - matrix has a Cholesky decomposition, with pivots above rounding errors, where I is the identity.
@@ -105,11 +105,11 @@ private:
             return row[p] + (static_cast<std::ptrdiff_t>(c) - static_cast<std::ptrdiff_t>(first + p));
         }
     };
-    void load_group(const BandMatrix& matrix, std::size_t of_group, Real limit);
-    /// take() subtracts multiples of the pivot rows from row r. take_from_two() does the same for rows r and r + 1, but
-    /// loads the pivot rows only once.
-    void take(const Pivots& pivots_of, std::size_t r);
-    void take_from_two(const Pivots& pivots_of, std::size_t r);
+    void load_group(const BandMatrix& matrix, std::size_t group_index, Real limit);
+    /// subtract_pivots() subtracts multiples of the pivot rows from row r. subtract_pivots_from_two() does the same for
+    /// rows r and r + 1, but loads the pivot rows only once.
+    void subtract_pivots(const Pivots& pivot, std::size_t r);
+    void subtract_pivots_from_two(const Pivots& pivot, std::size_t r);
     /// Pointer to the diagonal entry of row r. The entries of a column lie in the same lane of a register in all rows,
     /// so that rows are subtracted register by register.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }

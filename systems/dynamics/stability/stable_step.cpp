@@ -45,18 +45,20 @@ struct PieceRun {
 /// wave changes.
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
-    const auto place = static_cast<Index>(from);
-    const auto most = [&](Index pieces) { return static_cast<Index>(std::min<std::uint64_t>(until - from, pieces)); };
-    if (place < sums) {
-        const Index count = most(sums - place);
-        const Index first = blocks.begin + place * blocks_summed;
+    const auto piece = static_cast<Index>(from);
+    const auto at_most = [&](Index pieces) {
+        return static_cast<Index>(std::min<std::uint64_t>(until - from, pieces));
+    };
+    if (piece < sums) {
+        const Index count = at_most(sums - piece);
+        const Index first = blocks.begin + piece * blocks_summed;
         return {PieceWork::sum, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
     }
-    const bool in_frame = framed && place - sums < blocks.size();
-    const Index bound = (place - sums) % blocks.size();
+    const bool in_frame = framed && piece - sums < blocks.size();
+    const Index bound = (piece - sums) % blocks.size();
     const auto wave = static_cast<Index>(std::bit_floor(static_cast<std::uint64_t>(bound)));
     const Index wave_end = std::min(bound == 0 ? 1 : 2 * wave, blocks.size());
-    const Index count = most(wave_end - bound);
+    const Index count = at_most(wave_end - bound);
     const Index first = blocks.begin + bound;
     return {
         in_frame ? PieceWork::bound_in_frame : PieceWork::bound, bound == wave, {first, first + count}, from + count};
@@ -88,24 +90,25 @@ struct Pieces {
             for (std::size_t l = 0; l < element_lanes; ++l) sum[i] += elements.volume[b][l] * entry[i][l];
     }
     /// Calls visit(block, bound of omega^2 by lane) for each block. The bounds use frame masses in the rotation of the
-    /// body. Bounds below `enough` [1/s^2] may be given as `enough`.
-    void bound_in_frame(Range blocks, const Mat3& rotation, Real enough, auto&& visit) const {
+    /// body. Bounds below `threshold` [1/s^2] may be given as `threshold`.
+    void bound_in_frame(Range blocks, const Mat3& rotation, Real threshold, auto&& visit) const {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
-            visit(b,
-                  frequency_squared_in_frame(elements, b, deformation_of(elements, b, position), rotation, q, enough));
+            visit(b, frequency_squared_in_frame(elements, b, deformation_of(elements, b, position), rotation, q,
+                                                threshold));
         });
     }
-    /// Calls visit(block, bound of omega^2 by lane) for each block. Bounds below `enough` [1/s^2] may be given as
-    /// `enough`.
-    void bound(Range blocks, Real enough, auto&& visit) const {
+    /// Calls visit(block, bound of omega^2 by lane) for each block. Bounds below `threshold` [1/s^2] may be given as
+    /// `threshold`.
+    void bound(Range blocks, Real threshold, auto&& visit) const {
         // The search for the frame of a corotational element starts from the frame in the same lane of the block
         // before, since neighbours rotate alike.
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
             const LaneMat3<Real8> F = deformation_of(elements, b, position);
-            visit(b, has_mass_form(elements, b) ? frequency_squared_by_form(elements, b, F, q, enough)
-                                                : frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough));
+            visit(b, has_mass_form(elements, b)
+                         ? frequency_squared_by_form(elements, b, F, q, threshold)
+                         : frequency_squared_of(elements, b, F, mass, stiffness_sum, q, threshold));
         });
     }
 };
@@ -121,27 +124,27 @@ Greatest greatest_of(StepEvaluation& check, const PieceRun& run) {
 }
 
 /// Updates the greatest bound of omega^2 with the bounds of a block.
-void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepEvaluation& check) {
+void record_bound(std::size_t block, const Real8& bound, Greatest greatest, StepEvaluation& check) {
     for (std::size_t l = 0; l < element_lanes; ++l) {
-        const Index here = static_cast<Index>(block * element_lanes + l);
+        const Index element = static_cast<Index>(block * element_lanes + l);
         // a shape that is not finite has no stable step
-        if (!(bound[l] <= std::numeric_limits<Real>::max()) && check.broken == no_index) check.broken = here;
+        if (!(bound[l] <= std::numeric_limits<Real>::max()) && check.broken == no_index) check.broken = element;
         if (bound[l] > greatest.bound) {
             greatest.bound = bound[l];
-            greatest.element = here;
+            greatest.element = element;
         }
     }
 }
 
 /// Rotation nearest to the mean deformation gradient of a body.
-Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
+Mat3 mean_rotation(const std::array<Real, 9>& deformation) {
     const std::array<Real, 4> turn = nearest_rotation(Mat3(deformation.data()), {1, 0, 0, 0});
     return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
 }
 
 /// If the bound with frame masses is at most this multiple of its value at rest, the bounds with mass forms and mass
 /// shares are not computed. They would hardly be sharper.
-constexpr Real well_in_frame = 1.25;
+constexpr Real sharp_in_frame = 1.25;
 
 /// Continues a stable-step check until its first `until` pieces are done. in_chunks(run, body) must divide the blocks
 /// of the run into chunks, and call body(begin, end, StepEvaluation of the chunk) for each chunk.
@@ -157,17 +160,17 @@ void run_pieces(const Pieces& pieces, Range blocks, std::uint64_t until, StepEva
         if (run.work == PieceWork::sum) {
             pieces.sum(run, check);
         } else if (run.work == PieceWork::bound_in_frame || !(check.in_frame > 0) ||
-                   check.in_frame > well_in_frame * at_rest) {
-            if (run.work == PieceWork::bound_in_frame && !rotation) rotation = turn_as_whole(check.deformation);
+                   check.in_frame > sharp_in_frame * at_rest) {
+            if (run.work == PieceWork::bound_in_frame && !rotation) rotation = mean_rotation(check.deformation);
             in_chunks(run, [&](Index begin, Index end, StepEvaluation& found) {
-                const Range some{run.blocks.begin + begin, run.blocks.begin + end};
-                const auto note = [&](std::size_t b, const Real8& bound) {
-                    note_bound(b, bound, greatest_of(found, run), found);
+                const Range chunk{run.blocks.begin + begin, run.blocks.begin + end};
+                const auto record = [&](std::size_t b, const Real8& bound) {
+                    record_bound(b, bound, greatest_of(found, run), found);
                 };
                 if (run.work == PieceWork::bound_in_frame)
-                    pieces.bound_in_frame(some, *rotation, check.known, note);
+                    pieces.bound_in_frame(chunk, *rotation, check.known, record);
                 else
-                    pieces.bound(some, check.known, note);
+                    pieces.bound(chunk, check.known, record);
             });
         }
         check.piece = run.end;
@@ -195,17 +198,17 @@ std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks) {
 void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
                     StepEvaluation& check) {
-    // `least`: number of blocks in a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on
+    // `least`: number of blocks in a chunk, some 20 us of work. `max_chunks`: number of chunks whose results fit on
     // the stack.
-    constexpr Index least = 8, most_chunks = 64;
+    constexpr Index least = 8, max_chunks = 64;
     const auto in_chunks = [&](const PieceRun& run, auto&& body) {
         const Index count = run.blocks.size();
-        const Index size = std::max(least, (count + most_chunks - 1) / most_chunks);
+        const Index size = std::max(least, (count + max_chunks - 1) / max_chunks);
         if (count <= size) {
             body(0, count, check);
             return;
         }
-        std::array<StepEvaluation, static_cast<std::size_t>(most_chunks)> part;
+        std::array<StepEvaluation, static_cast<std::size_t>(max_chunks)> part;
         parallel_for(executor, static_cast<std::size_t>(count), static_cast<std::size_t>(size),
                      [&](std::size_t begin, std::size_t end) {
                          StepEvaluation& own = part[begin / static_cast<std::size_t>(size)];
@@ -214,10 +217,10 @@ void continue_check(Executor& executor, const ElementInputs& elements, Range blo
         for (Index c = 0; c * size < count; ++c) {
             StepEvaluation& own = part[static_cast<std::size_t>(c)];
             if (check.broken == no_index) check.broken = own.broken;
-            const Greatest most = greatest_of(check, run), here = greatest_of(own, run);
-            if (!(here.bound > most.bound)) continue;
-            most.bound = here.bound;
-            most.element = here.element;
+            const Greatest at_most = greatest_of(check, run), here = greatest_of(own, run);
+            if (!(here.bound > at_most.bound)) continue;
+            at_most.bound = here.bound;
+            at_most.element = here.element;
         }
     };
     run_pieces({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), until, check, in_chunks);
@@ -252,13 +255,13 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     by_shares.mass_form = {};
     by_shares.frame_bound = {};
     const Pieces pieces{by_shares, position, mass, stiffness_sum};
-    const Range of_body = without_guards(elements, blocks);
-    for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(of_body.size())))
+    const Range element_blocks = without_guards(elements, blocks);
+    for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(element_blocks.size())))
         std::ranges::fill(lanes.lane, infinity);
-    const std::uint64_t count = pieces_of_check(by_shares, of_body);
+    const std::uint64_t count = pieces_of_check(by_shares, element_blocks);
     StepEvaluation check;
     for (std::uint64_t piece = 0; piece < count;) {
-        const PieceRun run = run_from(of_body, false, piece, count);
+        const PieceRun run = run_from(element_blocks, false, piece, count);
         piece = run.end;
         if (run.work == PieceWork::sum) {
             pieces.sum(run, check);

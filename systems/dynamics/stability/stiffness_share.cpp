@@ -51,31 +51,31 @@ void count_springs(const ElementInputs& elements, std::size_t block, const Real8
 
 /// Upper bound of omega^2 of each element of a block with the inverse masses Q [1/s^2].
 Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const LaneMat3<Real8>& Q,
-               LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness, const FramePart* frame = nullptr) {
+               LaneQuaternion<Real8>& q, Real threshold, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
     // A number that is 0, or NaN if F is not finite. It is added because some bounds do not depend on F.
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.spring_strain.empty())
-        return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
+        return frequency_squared_bound(material, F, {}, volume, Q, q, threshold, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements are stable at the step to which `enough` belongs, so their exact bounds are not needed. This quick
-    // test lets the springs relax for that step. With unrelaxed springs it would fail for nearly all elements, since
-    // all elements at rest allow about the same step.
-    if (enough > 0) {
-        count_in(Real8{} + step_times_frequency / std::sqrt(enough));
+    // Most elements are stable at the step to which `threshold` belongs, so their exact bounds are not needed. This
+    // quick test lets the springs relax for that step. With unrelaxed springs it would fail for nearly all elements,
+    // since all elements at rest allow about the same step.
+    if (threshold > 0) {
+        count_in(Real8{} + step_times_frequency / std::sqrt(threshold));
         const Real8 compared =
-            frequency_squared_bound(material, F, viscous, volume, Q, q, enough, Sharpness::compared, frame);
-        if (all(compared <= enough)) return compared + nothing;
+            frequency_squared_bound(material, F, viscous, volume, Q, q, threshold, Sharpness::compared, frame);
+        if (all(compared <= threshold)) return compared + nothing;
         viscous.strain_share = Real8{} + Real{maxwell_count};
         viscous.volume_share = Real8{} + 1.0;
     }
     // The stable step with unrelaxed springs is shorter than the stable step with relaxing springs. It is therefore a
     // safe estimate of the step in which springs relax.
-    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame);
+    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, threshold, sharpness, frame);
     count_in(step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0));
-    return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame) + nothing;
+    return frequency_squared_bound(material, F, viscous, volume, Q, q, threshold, sharpness, frame) + nothing;
 }
 
 }  // namespace
@@ -118,8 +118,8 @@ void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<El
 
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
-                           Real enough) {
-    return bound_of(elements, block, F, inverse_mass_tensor(elements, block, F, mass, stiffness_sum), q, enough,
+                           Real threshold) {
+    return bound_of(elements, block, F, inverse_mass_tensor(elements, block, F, mass, stiffness_sum), q, threshold,
                     Sharpness::trace);
 }
 
@@ -134,12 +134,12 @@ LaneMat3<Real8> form_of(const ElementInputs& elements, std::size_t block) {
 }  // namespace
 
 Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                                LaneQuaternion<Real8>& q, Real enough) {
-    return bound_of(elements, block, F, form_of(elements, block), q, enough, Sharpness::bisected);
+                                LaneQuaternion<Real8>& q, Real threshold) {
+    return bound_of(elements, block, F, form_of(elements, block), q, threshold, Sharpness::bisected);
 }
 
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                      LaneQuaternion<Real8>& q, Real enough, Real step) {
+                      LaneQuaternion<Real8>& q, Real threshold, Real step) {
     const MaterialConstants material = elements.material_of(block);
     ViscousPart viscous;
     if (material.relaxes() && !elements.spring_strain.empty()) {
@@ -147,29 +147,30 @@ Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const La
         count_springs(elements, block, Real8{} + step, viscous);
     }
     return frequency_squared_bound(material, F, viscous, load(elements.volume[block]), form_of(elements, block), q,
-                                   enough, Sharpness::stepped) +
+                                   threshold, Sharpness::stepped) +
            0.0 * inner_product(F, F);  // this term makes the bound NaN if F is not finite
 }
 
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                                 const Mat3& rotation, LaneQuaternion<Real8>& q, Real enough) {
+                                 const Mat3& rotation, LaneQuaternion<Real8>& q, Real threshold) {
     const FrameMass& mass = elements.frame_mass[block];
-    const Real8 of_strain = load(mass[0]), zero{};
+    const Real8 strain_mass = load(mass[0]), zero{};
     const FramePart frame{rotation, load(mass[1])};
-    return bound_of(elements, block, F, {{of_strain, zero, zero}, {zero, of_strain, zero}, {zero, zero, of_strain}}, q,
-                    enough, Sharpness::bisected, &frame);
+    return bound_of(elements, block, F,
+                    {{strain_mass, zero, zero}, {zero, strain_mass, zero}, {zero, zero, strain_mass}}, q, threshold,
+                    Sharpness::bisected, &frame);
 }
 
 namespace {
 
 /// Calls frequency_squared_bound() with unit masses, and with `volume` in place of the volumes of the elements.
 Real8 hessian_bound(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& volume,
-                    LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
+                    LaneQuaternion<Real8>& q, Real threshold, Sharpness sharpness) {
     const MaterialConstants material = elements.material_of(block);
     const bool viscous = material.relaxes() && !elements.spring_strain.empty();
     const Real8 one = Real8{} + 1.0, zero{};
     return frequency_squared_bound(material, F, viscous ? viscous_part(elements, block, F) : ViscousPart{}, volume,
-                                   {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, q, enough, sharpness);
+                                   {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, q, threshold, sharpness);
 }
 
 }  // namespace

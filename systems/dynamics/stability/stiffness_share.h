@@ -57,10 +57,10 @@ inline void clear_stiffness(const ElementInputs& elements, std::size_t block, st
 ///
 /// Without stiffness_sum every element has the full mass of its nodes. The result is then no bound for a body, but the
 /// frequency of the element alone. `q` is the initial guess of the corotational frame and receives the frame found.
-/// `enough` [1/s^2]: see frequency_squared_bound().
+/// `threshold` [1/s^2]: see frequency_squared_bound().
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
-                           Real enough = 0);
+                           Real threshold = 0);
 
 /// True if the elements of a block have mass forms (mass_forms.h).
 inline bool has_mass_form(const ElementInputs& elements, std::size_t block) {
@@ -69,13 +69,14 @@ inline bool has_mass_form(const ElementInputs& elements, std::size_t block) {
 
 /// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h, at most 0.3 % too large [1/s^2].
 Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                                LaneQuaternion<Real8>& q, Real enough = 0);
+                                LaneQuaternion<Real8>& q, Real threshold = 0);
 
 /// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the least of
-/// `enough`, 1.1 `enough`, 1.21 `enough`... that is above omega^2, and infinite beyond ten times `enough`. Springs of
-/// Maxwell elements relax as in steps of length `step` [s], so that the bound is also valid for longer steps.
+/// `threshold`, 1.1 `threshold`, 1.21 `threshold`... that is above omega^2, and infinite beyond ten times `threshold`.
+/// Springs of Maxwell elements relax as in steps of length `step` [s], so that the bound is also valid for longer
+/// steps.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                      LaneQuaternion<Real8>& q, Real enough, Real step);
+                      LaneQuaternion<Real8>& q, Real threshold, Real step);
 
 /// Upper bound of omega^2 at rest for a body with frame masses (frame_masses.h); 0 for other bodies [1/s^2].
 inline Real frame_bound(const ElementInputs& elements, Range blocks) {
@@ -87,7 +88,7 @@ inline Real frame_bound(const ElementInputs& elements, Range blocks) {
 /// Upper bound of omega^2 of each element of a block with the masses of frame_masses.h, at most 0.3 % too large
 /// [1/s^2]. `rotation`: mean rotation of the body.
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                                 const Mat3& rotation, LaneQuaternion<Real8>& q, Real enough = 0);
+                                 const Mat3& rotation, LaneQuaternion<Real8>& q, Real threshold = 0);
 
 /// Upper bound h on the material Hessian of each element of a block, with all viscous parts [Pa]. The stiffness of the
 /// element between nodes k and l is then bounded by the matrix h V g_k.g_l, with the volume V and the gradients g_k.

@@ -47,7 +47,7 @@ public:
     ByColour(const ColouredOrder& order, Team& team, std::span<BlockSum> partial)
         : order_(&order), team_(&team), partial_(partial) {}
 
-    std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
+    std::size_t number_of(std::size_t position) const { return static_cast<std::size_t>(order_->contact[position]); }
     /// Visits the phases one after the other, although the contacts may be visited in any order here. Each worker then
     /// gets the same contacts as in a sweep and finds them in its cache.
     template <class Body>

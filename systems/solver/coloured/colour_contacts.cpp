@@ -15,10 +15,11 @@ constexpr Index tail_bin = colour_limit;
 /// takes a microsecond, claiming it a twentieth of that. The number of blocks is a power of two or a multiple of 16, so
 /// that 2, 4, 8 or 16 workers get equal numbers of blocks.
 Index blocks_of_colour(Index contacts) {
-    // `even`: greatest number of workers among which the blocks of a phase can be divided evenly
-    constexpr std::uint32_t most_contacts = 64, even = 16;
-    const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + most_contacts - 1) / most_contacts;
-    return static_cast<Index>(least <= even ? std::bit_ceil(least) : (least + even - 1) / even * even);
+    // `even_workers`: greatest number of workers among which the blocks of a phase can be divided evenly
+    constexpr std::uint32_t max_contacts = 64, even_workers = 16;
+    const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + max_contacts - 1) / max_contacts;
+    return static_cast<Index>(least <= even_workers ? std::bit_ceil(least)
+                                                    : (least + even_workers - 1) / even_workers * even_workers);
 }
 
 template <class Visit>
@@ -30,7 +31,7 @@ void for_each_node(const ContactNodes& nodes, Visit&& visit) {
 }
 
 /// colour() is the lowest colour that is still free at all nodes passed to exclude(), or colour_limit if there is none.
-/// take() marks this colour as used at the given nodes.
+/// mark_used() marks this colour as used at the given nodes.
 struct FreeColour {
     ColouringMemory& memory;
     std::uint64_t used = 0;
@@ -39,7 +40,7 @@ struct FreeColour {
         for_each_node(nodes, [&](Index node) { used |= memory.colours_used[node]; });
     }
     Index colour() const { return std::countr_one(used); }
-    void take(const ContactNodes& nodes) const {
+    void mark_used(const ContactNodes& nodes) const {
         if (colour() == colour_limit) return;
         const std::uint64_t bit = std::uint64_t{1} << colour();
         for_each_node(nodes, [&](Index node) { memory.colours_used[node] |= bit; });
@@ -81,7 +82,7 @@ Index fill_bins(std::span<const ContactNodes> contact, Index node_count, Colouri
         }
         FreeColour free{memory};
         free.exclude(nodes);
-        free.take(nodes);
+        free.mark_used(nodes);
         memory.bin[k] = free.colour();
         ++memory.bin_begin[memory.bin[k]];
     }
@@ -113,7 +114,7 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
                                                         static_cast<std::size_t>(memory.bin_begin[tail_bin + 1 + hub]));
         FreeColour free{memory};
         for (const Index k : row) free.exclude(contact[k]);
-        for (const Index k : row) free.take(contact[k]);
+        for (const Index k : row) free.mark_used(contact[k]);
         memory.hub_colour[hub] = free.colour();
         memory.hub_order[hub] = hub;
     }
@@ -137,15 +138,15 @@ public:
         for (Index colour = 0; colour < colour_limit; ++colour) {
             Index& begin = memory_.bin_begin[colour];
             if (begin < smallest_colour) {
-                leave(begin);
+                move_to_tail(begin);
                 continue;
             }
             const Index count = begin, blocks = blocks_of_colour(count);
             begin_phase();
-            begin = place_;
+            begin = next_;
             for (Index b = 0; b < blocks; ++b)
-                order_.block_offset.push_back(place_ + static_cast<Index>(std::int64_t{count} * b / blocks));
-            place_ += count;
+                order_.block_offset.push_back(next_ + static_cast<Index>(std::int64_t{count} * b / blocks));
+            next_ += count;
             ++order_.colour_count;
         }
     }
@@ -164,42 +165,42 @@ public:
             for (Index h = first; h < last; ++h) {
                 Index& begin = bin_of(h);
                 if (alone) {
-                    leave(begin);
+                    move_to_tail(begin);
                     continue;
                 }
                 const Index count = begin;
-                begin = place_;
-                order_.block_offset.push_back(place_);
-                place_ += count;
+                begin = next_;
+                order_.block_offset.push_back(next_);
+                next_ += count;
             }
         }
     }
 
     /// Adds the phase of the tail. Returns the index of the tail's first contact in the order.
     Index add_tail() {
-        leave(memory_.bin_begin[tail_bin]);
-        const Index begin = place_;
+        move_to_tail(memory_.bin_begin[tail_bin]);
+        const Index begin = next_;
         if (order_.tail_size > 0) {
             begin_phase();
             order_.block_offset.push_back(begin);
-            place_ += order_.tail_size;
+            next_ += order_.tail_size;
         }
         begin_phase();  // end marker
-        order_.block_offset.push_back(place_);
+        order_.block_offset.push_back(next_);
         return begin;
     }
 
 private:
     Index& bin_of(Index h) { return memory_.bin_begin[tail_bin + 1 + memory_.hub_order[h]]; }
     void begin_phase() { order_.phase_offset.push_back(static_cast<Index>(order_.block_offset.size())); }
-    void leave(Index& bin) {
+    void move_to_tail(Index& bin) {
         order_.tail_size += bin;
         bin = no_index;
     }
 
     ColouringMemory& memory_;
     ColouredOrder& order_;
-    Index place_ = 0;
+    Index next_ = 0;
 };
 
 /// Lists the contacts in `by_node`, sorted by their lowest moving node. Contacts with equal lowest node stay in

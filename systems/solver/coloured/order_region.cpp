@@ -6,7 +6,7 @@ namespace {
 /// Writes the moving nodes of all contacts to region.moving. Returns true if they equal the nodes that the last call
 /// wrote.
 bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& team, ColouredRegion& region) {
-    const bool as_many = region.moving.size() == row.size();
+    const bool same_count = region.moving.size() == row.size();
     region.moving.resize(row.size());
     const std::size_t blocks = static_cast<std::size_t>(row_block_count(row.size()));
     if (region.same_nodes.size() < blocks) region.same_nodes.resize(blocks);
@@ -19,15 +19,15 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
         }
         region.same_nodes[block] = same;
     });
-    bool same = as_many;
+    bool same = same_count;
     for (std::size_t block = 0; block < blocks; ++block) same = same && region.same_nodes[block] != 0;
     return same;
 }
 
-/// Numbers the nodes of the region in the order of their first appearance. `place` stores the number of a node at its
-/// row of NodeTable. It is not cleared between calls: an entry is valid only if region.node holds this node at the
+/// Numbers the nodes of the region in the order of their first appearance. `node_number` stores the number of a node at
+/// its row of NodeTable. It is not cleared between calls: an entry is valid only if region.node holds this node at the
 /// stored number.
-void number_nodes(std::span<Index> place, ColouredRegion& region) {
+void number_nodes(std::span<Index> node_number, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());
     for (std::size_t k = 0; k < region.moving.size(); ++k) {
@@ -38,7 +38,7 @@ void number_nodes(std::span<Index> place, ColouredRegion& region) {
                 local[a] = no_index;
                 continue;
             }
-            Index& number = place[global];
+            Index& number = node_number[global];
             if (static_cast<std::size_t>(number) >= region.node.size() || region.node[number] != global) {
                 number = static_cast<Index>(region.node.size());
                 region.node.push_back(global);
@@ -59,10 +59,10 @@ ContactNodes moving_nodes(const RegionInputs& inputs, Index row) {
     return nodes;
 }
 
-bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place,
+bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> node_number,
                   ColouredRegion& region) {
     if (read_nodes(inputs, row, team, region)) return false;
-    number_nodes(place, region);
+    number_nodes(node_number, region);
     colour_contacts(region.local, static_cast<Index>(region.node.size()), region.colouring, region.order);
     if (region.partial.size() < block_count(region.order)) region.partial.resize(block_count(region.order));
     return true;

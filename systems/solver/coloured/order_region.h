@@ -19,16 +19,16 @@ struct ColouredRegion {
     Column<BlockSum> partial;  // for each block of the coloured order: partial sums over the contacts of the block
     Column<std::uint8_t> same_nodes;  // by block of contacts: 1 if the moving nodes equal those of the last call
 
-    ByColour walk(Team& team) { return {order, team, partial.span()}; }
+    ByColour traversal(Team& team) { return {order, team, partial.span()}; }
 };
 
 /// Returns the nodes that an impulse of contact `row` can move, in the order of the stencil.
 ContactNodes moving_nodes(const RegionInputs& inputs, Index row);
 
-/// Orders the contacts listed in `row`. `place` is scratch memory by row of NodeTable; its initial contents do not
-/// matter. Returns false if no moving node of a contact has changed since the last call, as in a region at rest. The
-/// order of the last call is then reused.
-bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place,
+/// Orders the contacts listed in `row`. `node_number` is scratch memory by row of NodeTable; its initial contents do
+/// not matter. Returns false if no moving node of a contact has changed since the last call, as in a region at rest.
+/// The order of the last call is then reused.
+bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> node_number,
                   ColouredRegion& region);
 
 }  // namespace skerry

@@ -125,8 +125,8 @@ void BlockFactor::multiply(std::span<const Real> blocks, std::span<const Real> x
     for (std::size_t k = 0; k < order_.size(); ++k) {
         const Index g = order_[k];
         const auto add = [&](Index row, Index column) {
-            const DenseBlock of = block(row, column);
-            add_product(of, blocks.data() + (of.data - number_.data()), x.data() + first(column),
+            const DenseBlock block_data = block(row, column);
+            add_product(block_data, blocks.data() + (block_data.data - number_.data()), x.data() + first(column),
                         right_.data() + first(row));
         };
         add(g, g);

@@ -34,7 +34,7 @@ BodyEquations::Square BodyEquations::square(Index numbers) {
 void BodyEquations::keep_inertia() {
     inertia_.resize(factor_.numbers().size());
     std::ranges::copy(factor_.numbers(), inertia_.begin());
-    for (Column<Real>* column : {&present, &answered, &change, &step, &before}) column->resize(factor_.right().size());
+    for (Column<Real>* column : {&present, &produced, &change, &step, &before}) column->resize(factor_.right().size());
 }
 
 void BodyEquations::start_from_inertia() {
@@ -42,26 +42,28 @@ void BodyEquations::start_from_inertia() {
 }
 
 void BodyEquations::add(Index contact, const Mat3& block) {
-    const Pushes& of = pushes_[static_cast<std::size_t>(contact)];
-    for (const BodyPush& row : of.all())
-        for (const BodyPush& column : of.all()) {
+    const Pushes& contact_pushes = pushes_[static_cast<std::size_t>(contact)];
+    for (const BodyPush& row : contact_pushes.all())
+        for (const BodyPush& column : contact_pushes.all()) {
             const DenseBlock to = factor_.block(row.part, column.part);
             if (!row.turns && !column.turns) {  // the usual case
                 const Real weight = row.weight * column.weight;
                 for (Index k = 0; k < 3; ++k)
-                    for (Index l = 0; l < 3; ++l) to.column(column.place + k)[row.place + l] += weight * block(l, k);
+                    for (Index l = 0; l < 3; ++l)
+                        to.column(column.first_entry + k)[row.first_entry + l] += weight * block(l, k);
                 continue;
             }
             const Eigen::Matrix<Real, 6, 6> share = jacobian_of(row).transpose() * block * jacobian_of(column);
             for (Index k = 0; k < numbers_of(column); ++k)
-                for (Index l = 0; l < numbers_of(row); ++l) to.column(column.place + k)[row.place + l] += share(l, k);
+                for (Index l = 0; l < numbers_of(row); ++l)
+                    to.column(column.first_entry + k)[row.first_entry + l] += share(l, k);
         }
 }
 
 Vec3 BodyEquations::velocity(Index contact, std::span<const Real> v) const {
     Vec3 sum = Vec3::Zero();
     for (const BodyPush& push : pushes_[static_cast<std::size_t>(contact)].all()) {
-        const Real* const at = v.data() + factor_.first(push.part) + static_cast<std::size_t>(push.place);
+        const Real* const at = v.data() + factor_.first(push.part) + static_cast<std::size_t>(push.first_entry);
         sum += push.weight * Vec3(at[0], at[1], at[2]);
         if (push.turns) sum += Vec3(at[3], at[4], at[5]).cross(push.arm);
     }
@@ -77,7 +79,7 @@ Real BodyEquations::set_right(std::span<const Real> x) {
 
 void BodyEquations::add_right(Index contact, const Vec3& impulse) {
     for (const BodyPush& push : pushes_[static_cast<std::size_t>(contact)].all()) {
-        Real* const at = factor_.right().data() + factor_.first(push.part) + static_cast<std::size_t>(push.place);
+        Real* const at = factor_.right().data() + factor_.first(push.part) + static_cast<std::size_t>(push.first_entry);
         const Vec3 moment = push.arm.cross(impulse);
         for (Index k = 0; k < 3; ++k) at[k] += push.weight * impulse[k];
         if (push.turns)
@@ -86,7 +88,7 @@ void BodyEquations::add_right(Index contact, const Vec3& impulse) {
 }
 
 void BodyEquations::start_round() {
-    way.assign(pushes_.size(), Vec3::Zero());
+    sliding_direction.assign(pushes_.size(), Vec3::Zero());
     stops.assign(pushes_.size(), 0);
     rises = 0;
 }

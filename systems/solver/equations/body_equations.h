@@ -17,7 +17,7 @@ namespace skerry {
 /// velocity and spin of a rigid body (six entries).
 struct BodyPush {
     Index part = no_index;
-    Index place = 0;  // index of the first entry of the unknown within the part
+    Index first_entry = 0;  // index of the first entry of the unknown within the part
     bool turns = false;
     Real weight = 0;
     // For rigid bodies: sum of stencil weight times vector from the centre of mass to the node [m]
@@ -31,18 +31,18 @@ public:
         std::array<BodyPush, 6> push;
         Index count = 0;
 
-        void add(const BodyPush& of) { push[static_cast<std::size_t>(count++)] = of; }
+        void add(const BodyPush& added) { push[static_cast<std::size_t>(count++)] = added; }
         std::span<const BodyPush> all() const { return {push.data(), static_cast<std::size_t>(count)}; }
     };
     /// A node velocity or rigid motion that contacts of the region can change. `row`: its row among the velocities of
-    /// the region. `part`, `place`: its part of the equations, and its first entry within the part.
+    /// the region. `part`, `first_entry`: its part of the equations, and its first entry within the part.
     struct Unknown {
         Index body, partner;  // identify the unknown's body and, for a node, the other body it touches, or no_index
         Index row;
         Index rigid = no_index;  // row of RigidBodyTable if the unknown is a rigid motion
         Index slot = no_index;   // for nodes of implicit bodies: velocity row of the body's rigid motion
         Real mass = 0;           // mass of the node, for nodes with their own mass [kg]
-        Index part = no_index, place = 0;
+        Index part = no_index, first_entry = 0;
     };
     /// Memory for a square matrix, the inverse of the matrix and the pivots.
     struct Square {
@@ -71,21 +71,21 @@ public:
     Real set_right(std::span<const Real> x);
     /// Adds J^T r to the right-hand side, where r is the impulse of a contact.
     void add_right(Index contact, const Vec3& impulse);
-    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: clears `way`, `stops` and
-    /// `rises`.
+    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: clears `sliding_direction`,
+    /// `stops` and `rises`.
     void start_round();
 
     Real softness = 0;         // compliance of the contacts in a round, as a fraction of the mobility D
     bool rigid_modes = false;  // true: deformable bodies move only as rigid bodies
     Column<Vec3> offset;  // by contact: part of the contact velocity that is independent of the unknowns, u - J v [m/s]
 
-    // Vectors by number [m/s, rad/s]. present: motion of the current iterate. answered: motion that the impulses for
-    // `present` produce. change: answered - present. step: Newton step. before: `present` before the step.
-    Column<Real> present, answered, change, step, before;
-    Column<Mat3> answer;  // by contact: derivative of the impulse from which the last matrix was built
+    // Vectors by number [m/s, rad/s]. present: motion of the current iterate. produced: motion that the impulses for
+    // `present` produce. change: produced - present. step: Newton step. before: `present` before the step.
+    Column<Real> present, produced, change, step, before;
+    Column<Mat3> derivative;  // by contact: derivative of the impulse from which the last matrix was built
     // Data by contact. way: sliding direction of the contact with which the last matrix was built; zero if it did not
     // slide. stops: 1 if the next step shall stop the contact.
-    Column<Vec3> way;
+    Column<Vec3> sliding_direction;
     Column<std::uint8_t> stops;
     Index rises = 0;  // number of steps in this round that were accepted although the merit function rose
 

@@ -14,31 +14,31 @@ constexpr Index panel = 8;  // number of columns that are factored one by one be
 Real8 load(const Real* from, Real8) {
     return *reinterpret_cast<const Real8InMemory*>(from);
 }
-void subtract(const Real8& what, Real* from) {
-    const Real8 left = *reinterpret_cast<const Real8InMemory*>(from) - what;
+void subtract(const Real8& value, Real* from) {
+    const Real8 left = *reinterpret_cast<const Real8InMemory*>(from) - value;
     *reinterpret_cast<Real8InMemory*>(from) = left;
 }
-void put(const Real8& what, Real* to) {
-    *reinterpret_cast<Real8InMemory*>(to) = what;
+void store_value(const Real8& value, Real* to) {
+    *reinterpret_cast<Real8InMemory*>(to) = value;
 }
 Real load(const Real* from, Real) {
     return *from;
 }
-void subtract(Real what, Real* from) {
-    *from -= what;
+void subtract(Real value, Real* from) {
+    *from -= value;
 }
 
 /// Operations that write one register of a product into a column of c: subtract the register, subtract only the last
 /// rows of the register (the rows above are already done), or overwrite the column with the register.
-constexpr auto take_off = [](const auto& what, Real* from) { subtract(what, from); };
+constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
 struct TakeOffLast {
     Index count;
 
-    void operator()(const Real8& what, Real* from) const {
-        for (Index k = 8 - count; k < 8; ++k) from[k] -= what[k];
+    void operator()(const Real8& value, Real* from) const {
+        for (Index k = 8 - count; k < 8; ++k) from[k] -= value[k];
     }
 };
-constexpr auto put_there = [](const Real8& what, Real* to) { put(what, to); };
+constexpr auto store = [](const Real8& value, Real* to) { store_value(value, to); };
 
 /// Computes the rows of the product a b from `row` on that fill one register: 8 rows if Part is Real8, 1 row if Part is
 /// Real. Passes each column of the result to `finish`, with the address of the same rows of c.
@@ -82,9 +82,9 @@ std::pair<Index, Index> columns_that_count(const DenseBlock& a, Index row) {
     return {first, last};
 }
 
-void exchange_rows(const DenseBlock& of, Index from, Index to) {
+void exchange_rows(const DenseBlock& block, Index from, Index to) {
     if (from == to) return;
-    for (Index k = 0; k < of.columns; ++k) std::swap(of.column(k)[from], of.column(k)[to]);
+    for (Index k = 0; k < block.columns; ++k) std::swap(block.column(k)[from], block.column(k)[to]);
 }
 
 /// Subtracts a multiple of a vector of length `count`: y -= factor x.
@@ -119,30 +119,30 @@ struct TriangleInverse {
 
     Real* column(Index k) { return number + k * panel; }
     static TriangleInverse lower(const DenseBlock& factors, Index begin) {
-        TriangleInverse of;
+        TriangleInverse inverse;
         for (Index c = 0; c < panel; ++c) {
-            Real* const x = of.column(c);
+            Real* const x = inverse.column(c);
             x[c] = 1;
             for (Index k = c; k < panel; ++k)
                 for (Index i = k + 1; i < panel; ++i) x[i] -= factors.column(begin + k)[begin + i] * x[k];
         }
-        return of;
+        return inverse;
     }
     static TriangleInverse upper(const DenseBlock& factors, Index begin) {
-        TriangleInverse of;
+        TriangleInverse inverse;
         for (Index c = 0; c < panel; ++c) {
-            Real* const x = of.column(c);
+            Real* const x = inverse.column(c);
             x[c] = 1;
             for (Index k = c + 1; k-- > 0;) {
                 x[k] /= factors.column(begin + k)[begin + k];
                 for (Index i = 0; i < k; ++i) x[i] -= factors.column(begin + k)[begin + i] * x[k];
             }
         }
-        return of;
+        return inverse;
     }
     /// Replaces b by the inverse of the triangle times b. In-place is safe: the columns of b are read four at a time
     /// before they are written.
-    void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
+    void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, store); }
 };
 constexpr Index many_columns = panel;  // least number of right-hand columns for which TriangleInverse pays off
 
@@ -173,7 +173,7 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
 
 /// Splits the columns of b where at least eight consecutive columns are zero, and calls of(begin, count) for each range
 /// between. Zero columns come from nodes without a pressed contact, which do not couple to other bodies.
-void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
+void for_each_run_of_columns(const DenseBlock& b, auto&& visit) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {
         const Real* const at = b.column(k);
@@ -183,12 +183,12 @@ void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
     for (Index k = 0; k < b.columns; ++k) {
         if (!counts(k)) continue;
         if (k - end >= gap || end == 0) {
-            if (end > begin) of(begin, end - begin);
+            if (end > begin) visit(begin, end - begin);
             begin = k;
         }
         end = k + 1;
     }
-    if (end > begin) of(begin, end - begin);
+    if (end > begin) visit(begin, end - begin);
 }
 
 void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
@@ -198,12 +198,12 @@ void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const Dens
         // node of a face to a few consecutive nodes of the other face.
         const auto [first, last] = columns_that_count(a, row);
         multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
-                             take_off);
+                             subtract_from);
     }
     if (row < c.rows && c.rows >= 8)
         multiply_rows<Real8>(a, b, c, c.rows - 8, TakeOffLast{c.rows - row});
     else
-        for (; row < c.rows; ++row) multiply_rows<Real>(a, b, c, row, take_off);
+        for (; row < c.rows; ++row) multiply_rows<Real>(a, b, c, row, subtract_from);
 }
 
 void solve_all(const DenseBlock& factors, const Index* pivot, const DenseBlock& b, bool many) {
@@ -241,7 +241,7 @@ void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Re
             return sum;
         };
         Index row = 0;
-        for (; row + 8 <= shape.rows; row += 8) put(sum_of_row(row, load(y + row, Real8{})), y + row);
+        for (; row + 8 <= shape.rows; row += 8) store_value(sum_of_row(row, load(y + row, Real8{})), y + row);
         for (; row < shape.rows; ++row) y[row] = sum_of_row(row, y[row]);
     }
     for (; at < shape.columns; ++at) subtract_scaled(-x[at], column(at), y, shape.rows);

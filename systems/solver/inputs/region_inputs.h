@@ -140,12 +140,12 @@ struct RegionInputs {
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
-    TouchPlaces touch{};                 // contact points on cylinders, and points of ties
+    TouchPoints touch{};                 // contact points on cylinders, and points of ties
     // friction axis of each contact; empty: friction is the same in all directions
     std::span<const FrictionAxis> friction_axis{};
 
     /// True if the contact at this row is a tie, which is a bilateral constraint: its impulse may also pull (see
-    /// FrictionLimits). TouchPlaces::point then holds the point at which the impulse acts on both bodies.
+    /// FrictionLimits). TouchPoints::point then holds the point at which the impulse acts on both bodies.
     bool is_tie(Index row) const { return dynamic_friction[static_cast<std::size_t>(row)] == infinity; }
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
@@ -177,7 +177,7 @@ struct RegionInputs {
                 .second_body = binder.read(contact.second_body),
                 .body_kind = binder.read(body.kind),
                 .still_time = binder.read(body.still_time),
-                .touch = TouchPlaces::bind(binder, contact),
+                .touch = TouchPoints::bind(binder, contact),
                 .friction_axis = binder.read_if(binder.read(sets).any_direction(), contact.friction_axis)};
     }
 };

@@ -25,11 +25,11 @@ struct MobilitySum {
 
 }  // namespace
 
-Vec3 CableLaw::at_point(std::span<const Real> of, std::size_t p) const {
-    if (is_tie) return {of[0], of[1], of[2]};
+Vec3 CableLaw::at_point(std::span<const Real> impulses, std::size_t p) const {
+    if (is_tie) return {impulses[0], impulses[1], impulses[2]};
     Vec3 sum = Vec3::Zero();
-    if (p < segments()) sum += of[p] * direction[p];
-    if (p > 0) sum -= of[p - 1] * direction[p - 1];
+    if (p < segments()) sum += impulses[p] * direction[p];
+    if (p > 0) sum -= impulses[p - 1] * direction[p - 1];
     return sum;
 }
 
@@ -52,14 +52,14 @@ void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segm
 }
 
 void CableLaw::prepare() const {
-    MobilitySum of;
+    MobilitySum mobility_sum;
     for (std::size_t s = segments(); s-- > 0;) {
-        of.add(entry(s, s));
+        mobility_sum.add(entry(s, s));
         for (std::size_t m = s + 1; m < segments(); ++m) {
-            of.add(entry(s, m));
-            of.add(entry(m, s));
+            mobility_sum.add(entry(s, m));
+            mobility_sum.add(entry(m, s));
         }
-        far_mobility[s] = of.value();
+        far_mobility[s] = mobility_sum.value();
     }
 }
 
@@ -69,10 +69,10 @@ Real CableLaw::far_rate(std::size_t s) const {
     return sum;
 }
 
-Real CableLaw::answer(std::size_t s, Real of) const {
-    if (s == 0 && !by_length) return wanted;
-    const Real excess = far_rate(s) - (s == 0 ? wanted : Real(0));
-    const Real next = of > 0 ? impulse[s] + excess / of : impulse[s];
+Real CableLaw::next_impulse(std::size_t s, Real rate_mobility) const {
+    if (s == 0 && !by_length) return prescribed;
+    const Real excess = far_rate(s) - (s == 0 ? prescribed : Real(0));
+    const Real next = rate_mobility > 0 ? impulse[s] + excess / rate_mobility : impulse[s];
     if (s == 0) return std::max(Real(0), next);
     return std::clamp(next, impulse[s - 1] / most_ratio[s], impulse[s - 1] * most_ratio[s]);
 }
@@ -83,10 +83,10 @@ Real CableLaw::step(std::size_t s) const {
     const std::size_t count = segments();
     const Real present = impulse[s];
     const auto ratio = [&](std::size_t m) { return present > 0 ? impulse[m] / present : Real(1); };
-    MobilitySum of;  // decrease of far_rate(s) per unit change of impulse[s] [1/kg]
+    MobilitySum rate_mobility;  // decrease of far_rate(s) per unit change of impulse[s] [1/kg]
     for (std::size_t m = s; m < count; ++m)
-        for (std::size_t row = s; row < count; ++row) of.add(entry(row, m) * ratio(m));
-    const Real next = answer(s, of.value());
+        for (std::size_t row = s; row < count; ++row) rate_mobility.add(entry(row, m) * ratio(m));
+    const Real next = next_impulse(s, rate_mobility.value());
     const Real change = next - present;
     if (change == 0) return 0;
     for (std::size_t m = count; m-- > s;) {
@@ -99,8 +99,8 @@ Real CableLaw::step(std::size_t s) const {
 }
 
 Vec3 CableLaw::change_of_tie() const {
-    const Eigen::Map<const Mat3> of(mobility.data());
-    return -of.ldlt().solve(Eigen::Map<const Vec3>(rate.data()));
+    const Eigen::Map<const Mat3> matrix(mobility.data());
+    return -matrix.ldlt().solve(Eigen::Map<const Vec3>(rate.data()));
 }
 
 void CableLaw::solve() const {
@@ -111,9 +111,9 @@ void CableLaw::solve() const {
     }
     // If the passes end before convergence, the next sweep of the region continues from their impulses. So this limit
     // does not limit the accuracy.
-    constexpr int most_passes = 50;
+    constexpr int max_passes = 50;
     constexpr Real rounding = 1e-15;
-    for (int pass = 0; pass < most_passes; ++pass) {
+    for (int pass = 0; pass < max_passes; ++pass) {
         Real change = 0;
         for (std::size_t s = 0; s < segments(); ++s) change = std::max(change, step(s));
         if (change <= rounding * *std::ranges::max_element(impulse)) return;
@@ -124,8 +124,8 @@ Real CableLaw::squared_residual() const {
     if (is_tie) return -change_of_tie().dot(Eigen::Map<const Vec3>(rate.data()));
     Real sum = 0;
     for (std::size_t s = 0; s < segments(); ++s) {
-        const Real off = impulse[s] - answer(s, far_mobility[s]);
-        sum += far_mobility[s] * off * off;
+        const Real difference = impulse[s] - next_impulse(s, far_mobility[s]);
+        sum += far_mobility[s] * difference * difference;
     }
     return sum;
 }

@@ -20,7 +20,7 @@ struct CableLaw {
     // `direction`, `most_ratio` and `far_mobility` are unused.
     bool is_tie = false;
     bool by_length = false;
-    Real wanted = 0;  // if `by_length`: upper bound of the sum of the u_s [m/s]; else: impulse r_0 [N s]
+    Real prescribed = 0;  // if `by_length`: upper bound of the sum of the u_s [m/s]; else: impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
     std::span<const Real> most_ratio;  // by segment: e at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]
@@ -38,8 +38,8 @@ struct CableLaw {
     /// cable. Segment s pulls its first point by r_s and its last point by -r_s along `direction`. A segment without
     /// length has the impulse of the segment before it, or of the first segment with a length.
     void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
-    /// Impulse at point `p` due to the impulses `of` of the segments or of the tie [N s].
-    Vec3 at_point(std::span<const Real> of, std::size_t p) const;
+    /// Impulse at point `p` due to `impulses` of the segments or of the tie [N s].
+    Vec3 at_point(std::span<const Real> impulses, std::size_t p) const;
     /// Fills far_mobility.
     void prepare() const;
     /// Solves the law, starting from the present `impulse`. The impulses of contacts and of other cables stay. Updates
@@ -55,9 +55,9 @@ private:
     Real entry(std::size_t row, std::size_t column) const { return mobility[row * segments() + column]; }
     /// Rate of length of the cable from segment `s` on [m/s].
     Real far_rate(std::size_t s) const;
-    /// Impulse with which segment `s` satisfies the law if far_rate(s) decreases by `of` [1/kg] per unit of this
-    /// impulse [N s].
-    Real answer(std::size_t s, Real of) const;
+    /// Impulse with which segment `s` satisfies the law if far_rate(s) decreases by `rate_mobility` [1/kg] per unit of
+    /// this impulse [N s].
+    Real next_impulse(std::size_t s, Real rate_mobility) const;
     Real step(std::size_t s) const;
     /// Change of the impulse of a tie that makes its rate zero [N s].
     Vec3 change_of_tie() const;

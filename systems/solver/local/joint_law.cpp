@@ -4,9 +4,9 @@
 
 namespace skerry {
 
-void JointLaw::prepare(const Mat3& of, bool with_axis) {
+void JointLaw::prepare(const Mat3& delassus_block, bool with_axis) {
     axis_free = with_axis;
-    block = of;
+    block = delassus_block;
     if (!axis_free) {
         inverse = block.inverse();
         axis_mobility = 0;

@@ -34,7 +34,7 @@ inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
 
 /// Returns the impulse r of the axis, where u = w r + b is the axis velocity and w the mobility. The limits `low` and
 /// `high` hold regardless of all other forces.
-inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
+inline Real solve_axis(const AxisBounds& axis, Real w, Real b) {
     if (!(w > 0)) return 0;
     // u = w (drive + pull - drag u) + b, solved for u: u = w_damped drive + b_damped
     const Real share = 1 / (1 + w * axis.drag), w_damped = share * w, b_damped = share * (b + w * axis.pull);
@@ -60,8 +60,8 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     // Up to the lower target, `second` has its full strength, so `first` has the rest. Above it, `first` brakes fully.
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
-    const Real of_first = drive >= second - first ? drive - second : -first;
-    const Real motor = motor_first ? of_first : drive - of_first;
+    const Real first_drive = drive >= second - first ? drive - second : -first;
+    const Real motor = motor_first ? first_drive : drive - first_drive;
     return {motor, spring + (drive - motor)};
 }
 
@@ -75,25 +75,25 @@ struct JointLaw {
     // coefficient of the axis velocity in a mimic equation, which couples two joints; if not 0, no other member is used
     Real mimic = 0;
 
-    void prepare(const Mat3& of, bool with_axis);
+    void prepare(const Mat3& delassus_block, bool with_axis);
 
     /// Returns the impulse r with u = W r + b, where u is zero in the locked rows.
-    Vec3 answer(const AxisBounds& bounds, const Vec3& b) const {
+    Vec3 solve(const AxisBounds& bounds, const Vec3& b) const {
         if (!axis_free) return -(inverse * b);
         const Vec3 held(b.x(), b.y(), 0), towards(block(0, 2), block(1, 2), 0);
         const Vec3 locked = inverse * held, along = inverse * towards;
         Vec3 r = -locked;
-        r.z() = answer_axis(bounds, axis_mobility, b.z() - towards.dot(locked));
+        r.z() = solve_axis(bounds, axis_mobility, b.z() - towards.dot(locked));
         r -= r.z() * along;
         return r;
     }
-    Vec3 answer(const Vec3& b) const { return answer(axis, b); }
+    Vec3 solve(const Vec3& b) const { return solve(axis, b); }
 
     /// Residual of the joint law at impulse r and velocity u, with the scalar `mobility` in place of W
     /// (docs/methods/errors.md 1).
     Vec3 natural_map(const Vec3& r, const Vec3& u, Real mobility) const {
         Vec3 residual = u / mobility;
-        if (axis_free) residual.z() = r.z() - answer_axis(axis, mobility, u.z() - mobility * r.z());
+        if (axis_free) residual.z() = r.z() - solve_axis(axis, mobility, u.z() - mobility * r.z());
         return residual;
     }
 };

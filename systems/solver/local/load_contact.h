@@ -24,11 +24,11 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
 /// Loads contact `row`. `local(node)` returns the velocity row of a moving node in the region. `velocity_next` holds
-/// the predicted node velocities. A node moves with a rigid body if `elsewhere(node, weight)` returns true; such a node
-/// is omitted from the LumpedContact.
+/// the predicted node velocities. A node moves with a rigid body if `on_rigid_body(node, weight)` returns true; such a
+/// node is omitted from the LumpedContact.
 template <class Local, class Elsewhere>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
-                           const SolverSettings& settings, Real h, Local&& local, Elsewhere&& elsewhere) {
+                           const SolverSettings& settings, Real h, Local&& local, Elsewhere&& on_rigid_body) {
     const Stencil& stencil = inputs.stencil[row];
     LumpedContact contact;
     contact.normal = padded(inputs.normal[row]);
@@ -46,11 +46,11 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
             offset += weight * velocity_next[node];
             continue;
         }
-        if (elsewhere(node, weight)) continue;
-        const Index place = contact.node_count++;
-        contact.weight[place] = weight;
-        contact.step[place] = weight * inverse_mass;
-        contact.node[place] = local(node);
+        if (on_rigid_body(node, weight)) continue;
+        const Index index = contact.node_count++;
+        contact.weight[index] = weight;
+        contact.step[index] = weight * inverse_mass;
+        contact.node[index] = local(node);
         contact.diagonal += weight * weight * inverse_mass;
         lightest = std::max(lightest, inverse_mass);
     }

@@ -8,7 +8,7 @@ namespace skerry {
 
 struct LoadSums {
     // Sum of D |F|^2 over closing contacts, with the mobility D and the natural map F at zero impulses [J]
-    Real asked = 0;
+    Real squared_residual = 0;
     Real moving = 0;             // sum of |u|^2 / D over all contacts, closing or not, with the contact velocity u [J]
     Real inverse_diagonals = 0;  // sum of 1/D over the contacts, with the mobility D [kg]
     bool separating = true;      // true if no contact closes, so that zero impulses are the solution
@@ -25,11 +25,11 @@ struct LoadSums {
         moving += contact.inverse_diagonal * u.squaredNorm();
         if (separates(contact, u)) return;
         separating = false;
-        asked += contact.diagonal * natural_map(contact, friction, Vec4::Zero(), u).squaredNorm();
+        squared_residual += contact.diagonal * natural_map(contact, friction, Vec4::Zero(), u).squaredNorm();
     }
 
     LoadSums& operator+=(const LoadSums& other) {
-        asked += other.asked;
+        squared_residual += other.squared_residual;
         moving += other.moving;
         inverse_diagonals += other.inverse_diagonals;
         separating &= other.separating;

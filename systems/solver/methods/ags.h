@@ -30,7 +30,7 @@ public:
 
     Index iterations() const { return iteration_; }
     /// Resets the extrapolation after other code has changed the impulse.
-    void start_anew() {
+    void restart() {
         acceleration_ = {};
         op_.remember();
         change_ = unknown();

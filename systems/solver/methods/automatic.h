@@ -69,21 +69,21 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
 template <HasNewtonSteps Op>
 SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps,
                                        const SolveLimits& limits, Index& steps) {
-    constexpr Index most_times = 8, few = 4;
+    constexpr Index max_rounds = 8, few = 4;
     constexpr Real gain = 0.5;
-    const auto result = [&](const SolveResult& of) {
-        return SolveResult{sweeps.iterations() + steps, of.error, of.converged};
+    const auto result = [&](const SolveResult& solved) {
+        return SolveResult{sweeps.iterations() + steps, solved.error, solved.converged};
     };
-    for (Index time = 0; time < most_times; ++time) {
-        const Index left = limits.max_iterations - steps;
-        if (sweeps.run_to(std::min(sweeps.iterations() + few, left))) break;
-        if (sweeps.iterations() >= left) break;
+    for (Index time = 0; time < max_rounds; ++time) {
+        const Index remaining = limits.max_iterations - steps;
+        if (sweeps.run_to(std::min(sweeps.iterations() + few, remaining))) break;
+        if (sweeps.iterations() >= remaining) break;
         const Real error = test.result().error;
-        const SolveResult rounds = op.correct_rigid_modes(error, limits.tolerance, left - sweeps.iterations());
+        const SolveResult rounds = op.correct_rigid_modes(error, limits.tolerance, remaining - sweeps.iterations());
         steps += rounds.iterations;
         if (rounds.converged) return result(rounds);
         test.offer(rounds.error);
-        sweeps.start_anew();
+        sweeps.restart();
         if (rounds.error > gain * error) break;
     }
     return result(test.result());
@@ -98,10 +98,10 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
-    constexpr Real least_sweeps = 16;  // most regions converge within this number of sweeps
-    constexpr bool looks_later = HasNewtonSteps<Op>;
-    Real trial = looks_later ? 0 : newton_trial(op);
-    Real pause = std::max(trial, least_sweeps);
+    constexpr Real min_sweeps = 16;  // most regions converge within this number of sweeps
+    constexpr bool estimates_late = HasNewtonSteps<Op>;
+    Real trial = estimates_late ? 0 : newton_trial(op);
+    Real sweep_count = std::max(trial, min_sweeps);
     Real error_before = 1;
     Index iteration_before = 0, newton_steps = 0;
     if constexpr (HasNewtonSteps<Op>)
@@ -110,10 +110,10 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
             if (result.converged || !std::isfinite(result.error)) return result;
         }
     while (true) {
-        const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
+        const Real next = std::min<Real>(sweeps.iterations() + sweep_count, limits.max_iterations - newton_steps);
         bool ended = false;
         // Measure the convergence rate in the later half of the sweeps, because the first sweeps are always fast.
-        if (looks_later && trial > 0) {
+        if (estimates_late && trial > 0) {
             ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
             error_before = test.result().error;
             iteration_before = sweeps.iterations();
@@ -123,36 +123,36 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.converged || !std::isfinite(result.error))
             return {result.iterations + newton_steps, result.error, result.converged};
         if (result.iterations + newton_steps >= limits.max_iterations) break;
-        if (looks_later && trial == 0) {
+        if (estimates_late && trial == 0) {
             trial = newton_trial(op);
             // Take Newton steps after at most half of the allowed sweeps, unless two steps cost more than
             // out_of_proportion times all allowed sweeps.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
-            pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);
-            if (pause > result.iterations) {
-                pause -= result.iterations;
+            sweep_count = trial > out_of_proportion * all ? all : std::min(std::max(trial, min_sweeps), all / 2);
+            if (sweep_count > result.iterations) {
+                sweep_count -= result.iterations;
                 continue;
             }
         }
-        const Real pace =
+        const Real rate =
             std::log(error_before / result.error) / static_cast<Real>(result.iterations - iteration_before);
         error_before = result.error;
         iteration_before = result.iterations;
-        const Real left = limits.max_iterations - result.iterations - newton_steps;
-        if (pace * std::min(trial, left) > std::log(result.error / limits.tolerance)) continue;
+        const Real remaining = limits.max_iterations - result.iterations - newton_steps;
+        if (rate * std::min(trial, remaining) > std::log(result.error / limits.tolerance)) continue;
         // Successful solves take up to 14 steps (docs/decisions/0004). An operator's own Newton steps detect failure
         // themselves, so their limit is higher.
-        constexpr Index most_steps = HasNewtonSteps<Op> ? 40 : 20;
+        constexpr Index max_steps = HasNewtonSteps<Op> ? 40 : 20;
         const SolveResult newton =
             take_newton_steps(op, result.error, limits.tolerance,
-                              std::min(most_steps, limits.max_iterations - result.iterations - newton_steps));
+                              std::min(max_steps, limits.max_iterations - result.iterations - newton_steps));
         newton_steps += newton.iterations;
         if (newton.converged) return {result.iterations + newton_steps, newton.error, true};
         test.offer(newton.error);
-        sweeps.start_anew();
+        sweeps.restart();
         error_before = newton.error;
-        pause *= 2;
+        sweep_count *= 2;
     }
     return test.give_up(sweeps.iterations() + newton_steps);
 }

@@ -114,7 +114,7 @@ public:
     }
 
     /// Restores the best impulse, which is the measured impulse with the smallest error.
-    void go_back() { best_.restore(); }
+    void restore_best() { best_.restore(); }
     /// Stores the present impulse, found by another method, if its error is the smallest so far.
     void offer(Real error) { best_.offer(error); }
     /// Result of the last error measurement.

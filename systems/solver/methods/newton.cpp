@@ -10,12 +10,12 @@ namespace skerry {
 namespace {
 
 /// P(z) and its derivative: P(z) is the impulse of Coulomb's law for a contact that the impulse z would stop.
-struct CoulombAnswer {
+struct CoulombImpulse {
     Vec3 impulse;
     Mat3 derivative;
 };
 
-CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, FrictionLimits limits) {
+CoulombImpulse coulomb_impulse(const Vec3& z, const Vec3& normal, FrictionLimits limits) {
     if (limits.ties())
         return {project_tie(z, normal, limits),
                 limits.stick == 0 ? Mat3(normal * normal.transpose()) : Mat3::Identity()};
@@ -37,7 +37,7 @@ CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, FrictionLimits l
 class NewtonSteps {
 public:
     NewtonSteps(AnyOperator& op, NewtonMemory& memory)
-        : op_(op), memory_(memory), impulse_(op.impulse()), pull_(op.workspace(3)) {
+        : op_(op), memory_(memory), impulse_(op.impulse()), negative_velocity_(op.workspace(3)) {
         op_.assemble(memory_.operator_matrix);
         memory_.change.resize(3 * op_.size());
         memory_.contact.clear();
@@ -50,9 +50,9 @@ public:
     /// best one. `error` is the error of the present impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
         constexpr Index patience = 4;  // number of steps without a lower error before giving up (docs/decisions/0004)
-        const std::span<Vec4> kept = op_.workspace(2);
+        const std::span<Vec4> best = op_.workspace(2);
         SolveResult result{0, error, error <= tolerance};
-        std::ranges::copy(impulse_, kept.begin());
+        std::ranges::copy(impulse_, best.begin());
         Index best_at = 0;
         while (!result.converged && result.iterations < limit && result.iterations - best_at < patience) {
             ++result.iterations;
@@ -60,34 +60,35 @@ public:
             search_along_change();
             const Real next = op_.error();
             if (!(next < result.error)) continue;
-            std::ranges::copy(impulse_, kept.begin());
+            std::ranges::copy(impulse_, best.begin());
             best_at = result.iterations;
             result.error = next;
             result.converged = next <= tolerance;
         }
         if (best_at < result.iterations) {
-            std::ranges::copy(kept, impulse_.begin());
+            std::ranges::copy(best, impulse_.begin());
             op_.refresh();
         }
         return result;
     }
 
 private:
-    CoulombAnswer answer(Index i) {
+    CoulombImpulse law_impulse(Index i) {
         const NewtonMemory::Contact& contact = memory_.contact[i];
-        const Vec4 z = impulse_[i] + pull_[i] / contact.mobility;
-        return answer_coulomb(z.head<3>(), contact.normal.head<3>(), contact.mu);
+        const Vec4 z = impulse_[i] + negative_velocity_[i] / contact.mobility;
+        return coulomb_impulse(z.head<3>(), contact.normal.head<3>(), contact.mu);
     }
 
     /// Computes the Newton step d: opening contacts get zero impulse, and the others solve J d = -F with the Jacobian J
     /// of the natural map F. Returns false if the factorisation broke down.
     bool find_change() {
-        op_.residual(pull_);
+        op_.residual(negative_velocity_);
         memory_.active.clear();
         memory_.change.setZero();
         for (Index i = 0; i < op_.size(); ++i) {
             const NewtonMemory::Contact& contact = memory_.contact[i];
-            const Vec4 z = contact.mobility > 0 ? Vec4(impulse_[i] + pull_[i] / contact.mobility) : Vec4(Vec4::Zero());
+            const Vec4 z = contact.mobility > 0 ? Vec4(impulse_[i] + negative_velocity_[i] / contact.mobility)
+                                                : Vec4(Vec4::Zero());
             if (contact.normal.dot(z) > 0 || (contact.mu.ties() && contact.mobility > 0)) {
                 memory_.active.push_back(i);
             } else {
@@ -116,15 +117,16 @@ private:
         for (std::size_t a = 0; a < active.size(); ++a) {
             const Index i = active[a];
             const auto row = memory_.operator_matrix.middleRows<3>(3 * i);
-            const CoulombAnswer coulomb = answer(i);
-            const Mat3 answering = coulomb.derivative / memory_.contact[i].mobility;
-            const Eigen::Index place = static_cast<Eigen::Index>(3 * a);
-            memory_.rest.segment<3>(place) =
-                coulomb.impulse - impulse_[i].head<3>() - answering * (row * memory_.change);
+            const CoulombImpulse coulomb = law_impulse(i);
+            const Mat3 scaled_derivative = coulomb.derivative / memory_.contact[i].mobility;
+            const Eigen::Index first_row = static_cast<Eigen::Index>(3 * a);
+            memory_.rest.segment<3>(first_row) =
+                coulomb.impulse - impulse_[i].head<3>() - scaled_derivative * (row * memory_.change);
             for (std::size_t b = 0; b < active.size(); ++b)
-                memory_.jacobian.block<3, 3>(place, static_cast<Eigen::Index>(3 * b)) =
-                    answering * row.middleCols<3>(3 * active[b]);
-            memory_.jacobian.block<3, 3>(place, place) += (1 + redundancy) * Mat3::Identity() - coulomb.derivative;
+                memory_.jacobian.block<3, 3>(first_row, static_cast<Eigen::Index>(3 * b)) =
+                    scaled_derivative * row.middleCols<3>(3 * active[b]);
+            memory_.jacobian.block<3, 3>(first_row, first_row) +=
+                (1 + redundancy) * Mat3::Identity() - coulomb.derivative;
         }
     }
 
@@ -135,18 +137,18 @@ private:
     }
 
     /// Returns the merit function: the sum of D |F|^2 over the contacts, with the natural map F and the mobility D [J].
-    /// Writes -u to `pull_`.
+    /// Writes -u to `negative_velocity_`.
     Real merit() {
-        op_.residual(pull_);
+        op_.residual(negative_velocity_);
         Real sum = 0;
         for (Index i = 0; i < op_.size(); ++i) {
             const Real mobility = memory_.contact[i].mobility;
-            if (mobility > 0) sum += mobility * (answer(i).impulse - impulse_[i].head<3>()).squaredNorm();
+            if (mobility > 0) sum += mobility * (law_impulse(i).impulse - impulse_[i].head<3>()).squaredNorm();
         }
         return sum;
     }
 
-    void go(Real length) {
+    void move_along_change(Real length) {
         const std::span<const Vec4> start = op_.workspace(1);
         for (Index i = 0; i < op_.size(); ++i)
             impulse_[i] = op_.project(i, start[i] + length * padded(memory_.change.segment<3>(3 * i)));
@@ -163,7 +165,7 @@ private:
         Real least = infinity, best_length = 1;
         for (int k = 0; k < halvings; ++k) {
             const Real length = std::ldexp(Real(1), -k);
-            go(length);
+            move_along_change(length);
             const Real now = merit();
             if (now < least) {
                 least = now;
@@ -171,12 +173,12 @@ private:
             }
             if (now < enough * start) return;
         }
-        go(best_length);
+        move_along_change(best_length);
     }
 
     AnyOperator& op_;
     NewtonMemory& memory_;
-    std::span<Vec4> impulse_, pull_;  // pull_ is the negative contact velocity -u [m/s]
+    std::span<Vec4> impulse_, negative_velocity_;  // negative_velocity_ is the negative contact velocity -u [m/s]
 };
 
 }  // namespace
@@ -190,14 +192,14 @@ SolveResult solve_newton(AnyOperator& op, const SolveLimits& limits) {
     NewtonMemory memory;
     NewtonSteps steps(op, memory);
     BestIterate<AnyOperator> best(op);
-    constexpr Index first_sweeps = 10, most_steps = 30;  // chosen by hand
+    constexpr Index first_sweeps = 10, max_steps = 30;  // chosen by hand
     Index done = 0;
     for (Index sweeps = first_sweeps; done < limits.max_iterations; sweeps *= 2) {
         const Index pause = std::min(sweeps, limits.max_iterations - done);
         for (Index k = 0; k < pause; ++k) op.sweep(limits.relaxation);
         done += pause;
         const SolveResult result =
-            steps.run(op.error(), limits.tolerance, std::min(most_steps, limits.max_iterations - done));
+            steps.run(op.error(), limits.tolerance, std::min(max_steps, limits.max_iterations - done));
         done += result.iterations;
         if (result.converged || !std::isfinite(result.error)) return {done, result.error, result.converged};
         best.offer(result.error);

@@ -50,7 +50,7 @@ SolveResult run_conjugate_gradients(AnyOperator& op, const SolveLimits& limits, 
         std::ranges::fill(op.impulse(), Vec4::Zero());
         op.refresh();
         if (test.ends(0)) return test.result();
-        test.go_back();
+        test.restore_best();
     }
     start_conjugate_gradients(op);
     const Real first_residual = largest_entry(op.workspace(1));

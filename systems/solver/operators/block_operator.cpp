@@ -12,11 +12,11 @@ namespace {
 
 /// Returns `start` plus the sum over the off-diagonal blocks of a row, each times the vector of its contact. Three
 /// partial sums hide the latency of additions.
-inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, const Vec4* vector) {
+inline Vec4 add_row(const BlockMemory& memory, Index index, const Vec4& start, const Vec4* vector) {
     Vec4 first = start, second = Vec4::Zero(), third = Vec4::Zero();
     const BlockMemory::Columns* block = memory.block.data();
     const Index* neighbor = memory.neighbor.data();
-    for (Index k = memory.offset[place], end = memory.offset[place + 1]; k < end; ++k) {
+    for (Index k = memory.offset[index], end = memory.offset[index + 1]; k < end; ++k) {
         const Vec4& other = vector[neighbor[k]];
         first += block[k][0] * other[0];
         second += block[k][1] * other[1];
@@ -26,7 +26,7 @@ inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, c
 }
 
 /// Returns max(normal, 0). NaN stays NaN.
-inline Real pressing(Real normal) {
+inline Real positive_part(Real normal) {
     return std::max(normal, Real(0));
 }
 
@@ -36,8 +36,8 @@ Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u
     Vec4 next = impulse;
     for (int k = 0; k < 3; ++k) {
         if (!(block[k][k] > 0)) continue;
-        const Real wanted = impulse[k] - relaxation * u[k] / block[k][k];
-        next[k] = k == 0 ? pressing(wanted) : std::clamp(wanted, -mu * next[0], mu * next[0]);
+        const Real unclamped = impulse[k] - relaxation * u[k] / block[k][k];
+        next[k] = k == 0 ? positive_part(unclamped) : std::clamp(unclamped, -mu * next[0], mu * next[0]);
         u += (next[k] - impulse[k]) * block[k];
     }
     return next;
@@ -45,7 +45,7 @@ Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u
 
 /// Projects an impulse onto the friction pyramid in the contact frame: clamps each tangential component separately.
 Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
-    const Real normal = pressing(impulse[0]);
+    const Real normal = positive_part(impulse[0]);
     return {normal, std::clamp(impulse[1], -mu * normal, mu * normal),
             std::clamp(impulse[2], -mu * normal, mu * normal), 0};
 }
@@ -54,8 +54,8 @@ Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
 
 void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> order) {
     const std::size_t count = order.size();
-    std::vector<Index> place(count);
-    for (std::size_t i = 0; i < count; ++i) place[order[i]] = static_cast<Index>(i);
+    std::vector<Index> index(count);
+    for (std::size_t i = 0; i < count; ++i) index[order[i]] = static_cast<Index>(i);
     contact.resize(count);
     offset.assign(count + 1, 0);
     neighbor.clear();
@@ -69,7 +69,7 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
             if (system.column[k] == row) {
                 diagonal = system.block[k];
             } else {
-                neighbor.push_back(place[system.column[k]]);
+                neighbor.push_back(index[system.column[k]]);
                 block.push_back(columns_of(system.block[k]));
             }
         }
@@ -84,8 +84,9 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction) {
     if (friction == Friction::pyramid) {
         // The tangential limit uses the present normal impulse, not the projected one.
-        const Real limit = mu * pressing(impulse[0]);
-        return {impulse[0] - pressing(impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
+        const Real limit = mu * positive_part(impulse[0]);
+        return {impulse[0] - positive_part(impulse[0] - u[0]),
+                impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
     // Returns r minus the projection of r - u - mu |u_t| n onto the cone.
@@ -108,16 +109,16 @@ BlockOperator::BlockOperator(BlockMemory& memory, Index begin, Index end, Fricti
       smallest_size_(smallest_size),
       size_(smallest_size) {}
 
-Vec4 BlockOperator::velocity(Index place) const {
-    const BlockMemory::Contact& contact = memory_.contact[place];
-    return add_row(memory_, place, contact.q + times(contact.diagonal, memory_.impulse[place]), memory_.impulse.data());
+Vec4 BlockOperator::velocity(Index index) const {
+    const BlockMemory::Contact& contact = memory_.contact[index];
+    return add_row(memory_, index, contact.q + times(contact.diagonal, memory_.impulse[index]), memory_.impulse.data());
 }
 
 inline Real BlockOperator::step(Index i, Real relaxation) {
-    const Index place = begin_ + i;
-    BlockMemory::Contact& contact = memory_.contact[place];
-    const Vec4 before = memory_.impulse[place];
-    const Vec4 b = add_row(memory_, place, contact.q, memory_.impulse.data());
+    const Index index = begin_ + i;
+    BlockMemory::Contact& contact = memory_.contact[index];
+    const Vec4 before = memory_.impulse[index];
+    const Vec4 b = add_row(memory_, index, contact.q, memory_.impulse.data());
     Vec4 next;
     if (friction_ == Friction::pyramid) {
         next = step_pyramid(contact.diagonal, before, b + times(contact.diagonal, before), contact.mu, relaxation);
@@ -130,7 +131,7 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     }
     const Vec4 change = next - before;
     if (change.isZero(0)) return 0;
-    memory_.impulse[place] = next;
+    memory_.impulse[index] = next;
     const Real size = change.dot(times(contact.diagonal, change));
     // Adds this contact's estimated part of |F|^2. F is the natural map with the factor 1 instead of 1/D_i
     // (docs/methods/errors.md 3). For an impulse change d, |F_i| is estimated as the smaller of |d| and the velocity
@@ -164,19 +165,20 @@ bool BlockOperator::suggests_check(Real, Real tolerance) {
 }
 
 Real BlockOperator::error() {
-    Real lack = 0, q = 0, r = 0, u = 0;
-    for (Index place = begin_; place < end_; ++place) {
-        const BlockMemory::Contact& contact = memory_.contact[place];
-        const Vec4 velocity_now = velocity(place);
-        const Vec4& impulse_now = memory_.impulse[place];
-        lack += natural_map(impulse_now.head<3>(), velocity_now.head<3>(), contact.mu, friction_).squaredNorm();
+    Real squared_residual = 0, q = 0, r = 0, u = 0;
+    for (Index index = begin_; index < end_; ++index) {
+        const BlockMemory::Contact& contact = memory_.contact[index];
+        const Vec4 velocity_now = velocity(index);
+        const Vec4& impulse_now = memory_.impulse[index];
+        squared_residual +=
+            natural_map(impulse_now.head<3>(), velocity_now.head<3>(), contact.mu, friction_).squaredNorm();
         q += contact.q.squaredNorm();
         r += impulse_now.squaredNorm();
         u += velocity_now.squaredNorm();
     }
     size_ = std::sqrt(std::max({q, r, u, smallest_size_ * smallest_size_}));
-    if (last_swept_ > 0) calibration_ = lack / last_swept_;
-    return lack == 0 ? 0 : std::sqrt(lack) / size_;
+    if (last_swept_ > 0) calibration_ = squared_residual / last_swept_;
+    return squared_residual == 0 ? 0 : std::sqrt(squared_residual) / size_;
 }
 
 void BlockOperator::remember() {

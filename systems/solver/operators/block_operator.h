@@ -104,7 +104,7 @@ private:
     std::span<Vec4> part(std::vector<Vec4>& all) const {
         return {all.data() + begin_, static_cast<std::size_t>(end_ - begin_)};
     }
-    Vec4 velocity(Index place) const;
+    Vec4 velocity(Index index) const;
 
     BlockMemory& memory_;
     Index begin_, end_;

@@ -16,11 +16,11 @@ namespace {
 
 using Unknown = BodyEquations::Unknown;
 
-/// Calls `of(first, last)` for the range [first, last) of unknowns of each body.
-void for_each_body(const Column<Unknown>& unknown, auto&& of) {
+/// Calls `visit(first, last)` for the range [first, last) of unknowns of each body.
+void for_each_body(const Column<Unknown>& unknown, auto&& visit) {
     for (std::size_t begin = 0, end = 0; begin < unknown.size(); begin = end) {
         while (end < unknown.size() && unknown[end].body == unknown[begin].body) ++end;
-        of(begin, end);
+        visit(begin, end);
     }
 }
 
@@ -34,43 +34,43 @@ void add_identity(const DenseBlock& block, Index at, Real number) {
 /// they touch, and by row.
 void BodyOperator::list_unknowns(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
-    Column<Index>& of_row = equations.unknown_of_row();
+    Column<Index>& unknown_of_row = equations.unknown_of_row();
     unknown.clear();
-    of_row.assign(memory_.velocity.size(), no_index);
-    const auto list = [&](const Unknown& one) {
-        if (std::exchange(of_row[static_cast<std::size_t>(one.row)], 0) == no_index) unknown.push_back(one);
+    unknown_of_row.assign(memory_.velocity.size(), no_index);
+    const auto list = [&](const Unknown& added) {
+        if (std::exchange(unknown_of_row[static_cast<std::size_t>(added.row)], 0) == no_index) unknown.push_back(added);
     };
     for (Index i = 0; i < size(); ++i) {
-        std::array<Index, 2> name{no_index, no_index};  // identifiers of the bodies of the contact
+        std::array<Index, 2> body_id{no_index, no_index};  // identifiers of the bodies of the contact
         const auto add = [&](Index body) {
-            if (name[0] != body && name[1] != body) name[name[0] == no_index ? 0 : 1] = body;
+            if (body_id[0] != body && body_id[1] != body) body_id[body_id[0] == no_index ? 0 : 1] = body;
         };
-        const auto partner = [&](Index body) { return name[0] == body ? name[1] : name[0]; };
+        const auto partner = [&](Index body) { return body_id[0] == body ? body_id[1] : body_id[0]; };
         for (const RigidTerm& term : part(i).terms())
             if (moves_rigidly(equations, term)) add(term.slot);
-        const LumpedContact& of = contact(i);
-        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a)
-            if (is_unknown(equations, of.node[a])) add(name_of_node(of.node[a]));
+        const LumpedContact& lumped = contact(i);
+        for (std::size_t a = 0; a < static_cast<std::size_t>(lumped.node_count); ++a)
+            if (is_unknown(equations, lumped.node[a])) add(body_id_of_node(lumped.node[a]));
         for (const RigidTerm& term : part(i).terms())
             if (moves_rigidly(equations, term))
                 list({.body = term.slot, .partner = no_index, .row = term.slot, .rigid = term.row});
-        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) {
-            if (!is_unknown(equations, of.node[a])) continue;
-            const Index body = name_of_node(of.node[a]);
-            Unknown node{.body = body, .partner = partner(body), .row = of.node[a]};
-            node.mass = of.weight[a] / of.step[a];
+        for (std::size_t a = 0; a < static_cast<std::size_t>(lumped.node_count); ++a) {
+            if (!is_unknown(equations, lumped.node[a])) continue;
+            const Index body = body_id_of_node(lumped.node[a]);
+            Unknown node{.body = body, .partner = partner(body), .row = lumped.node[a]};
+            node.mass = lumped.weight[a] / lumped.step[a];
             for (const RigidTerm& term : part(i).terms())
-                if (term.row == walk_.rigid_row(of.node[a])) node.slot = term.slot;
+                if (term.row == traversal_.rigid_row(lumped.node[a])) node.slot = term.slot;
             list(node);
         }
     }
-    std::ranges::sort(unknown, {}, [](const Unknown& of) { return std::array{of.body, of.partner, of.row}; });
+    std::ranges::sort(unknown, {}, [](const Unknown& u) { return std::array{u.body, u.partner, u.row}; });
     for (std::size_t k = 0; k < unknown.size(); ++k)
-        of_row[static_cast<std::size_t>(unknown[k].row)] = static_cast<Index>(k);
+        unknown_of_row[static_cast<std::size_t>(unknown[k].row)] = static_cast<Index>(k);
 }
 
-Index BodyOperator::name_of_node(Index node) const {
-    return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
+Index BodyOperator::body_id_of_node(Index node) const {
+    return static_cast<Index>(memory_.velocity.size()) + traversal_.owner(node);
 }
 
 /// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or a group of nodes of
@@ -85,7 +85,7 @@ void BodyOperator::list_parts(BodyEquations& equations) const {
         while (end < unknown.size() && unknown[end].body == unknown[begin].body &&
                unknown[end].partner == unknown[begin].partner) {
             unknown[end].part = factor.part_count();
-            unknown[end].place = 3 * static_cast<Index>(end - begin);
+            unknown[end].first_entry = 3 * static_cast<Index>(end - begin);
             ++end;
         }
         factor.add_part(turns ? 6 : 3 * static_cast<Index>(end - begin));
@@ -95,24 +95,24 @@ void BodyOperator::list_parts(BodyEquations& equations) const {
 void BodyOperator::list_pushes(BodyEquations& equations) const {
     Column<BodyEquations::Pushes>& pushes = equations.pushes();
     pushes.resize(static_cast<std::size_t>(size()));
-    equations.answer.resize(static_cast<std::size_t>(size()));
+    equations.derivative.resize(static_cast<std::size_t>(size()));
     const auto unknown_of = [&](Index row) -> const Unknown& {
         return equations.unknown()[static_cast<std::size_t>(equations.unknown_of_row()[static_cast<std::size_t>(row)])];
     };
     for (Index i = 0; i < size(); ++i) {
-        BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
-        of.count = 0;
+        BodyEquations::Pushes& contact_pushes = pushes[static_cast<std::size_t>(i)];
+        contact_pushes.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
             // The rigid motion of a deformable body is an unknown only with rigid_modes, and only if the body is not
             // held. Without rigid_modes its nodes are the unknowns, and their velocities include the rigid motion.
             if (!moves_rigidly(equations, term)) continue;
-            of.add(
+            contact_pushes.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact(i).node_count); ++a) {
             if (!is_unknown(equations, contact(i).node[a])) continue;
             const Unknown& node = unknown_of(contact(i).node[a]);
-            of.add({.part = node.part, .place = node.place, .weight = contact(i).weight[a]});
+            contact_pushes.add({.part = node.part, .first_entry = node.first_entry, .weight = contact(i).weight[a]});
         }
     }
 }
@@ -121,9 +121,9 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
 void BodyOperator::couple_parts(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     factor.close_parts();
-    for (const BodyEquations::Pushes& of : equations.pushes())
-        for (const BodyPush& a : of.all())
-            for (const BodyPush& b : of.all()) factor.couple(a.part, b.part);
+    for (const BodyEquations::Pushes& contact_pushes : equations.pushes())
+        for (const BodyPush& a : contact_pushes.all())
+            for (const BodyPush& b : contact_pushes.all()) factor.couple(a.part, b.part);
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         if (!deforms(equations.unknown()[begin])) return;
         for (Index g = equations.unknown()[begin].part; g <= equations.unknown()[end - 1].part; ++g)
@@ -132,16 +132,16 @@ void BodyOperator::couple_parts(BodyEquations& equations) const {
 }
 
 bool BodyOperator::touches_clusters() const {
-    for (const LumpedContact& of : memory_.contact)
-        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a)
-            if (walk_.in_cluster(of.node[a])) return true;
+    for (const LumpedContact& lumped : memory_.contact)
+        for (std::size_t a = 0; a < static_cast<std::size_t>(lumped.node_count); ++a)
+            if (traversal_.in_cluster(lumped.node[a])) return true;
     return false;
 }
 bool BodyOperator::is_rigid(const Unknown& unknown) const {
     return unknown.rigid != no_index;
 }
 bool BodyOperator::deforms(const Unknown& unknown) const {
-    return !is_rigid(unknown) && walk_.moves_with_rigid(unknown.row);
+    return !is_rigid(unknown) && traversal_.moves_with_rigid(unknown.row);
 }
 
 BodyEquations& BodyOperator::newton_memory() {
@@ -156,8 +156,8 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
-    constexpr Index most_parts = 4000;  // the memory for all pairs of parts grows with the square of this
-    if (equations.factor().part_count() > most_parts) return equations;
+    constexpr Index max_parts = 4000;  // the memory for all pairs of parts grows with the square of this
+    if (equations.factor().part_count() > max_parts) return equations;
     couple_parts(equations);
     if (!equations.factor().analyse()) return equations;
     Real work = equations.factor().work();
@@ -187,12 +187,12 @@ void BodyOperator::assemble(BodyEquations& equations) const {
         for (std::size_t k = begin; k < end; ++k) {
             const DenseBlock block = factor.block(unknown[k].part, unknown[k].part);
             if (!is_rigid(unknown[k])) {
-                add_identity(block, unknown[k].place, unknown[k].mass);
+                add_identity(block, unknown[k].first_entry, unknown[k].mass);
                 continue;
             }
             const auto body = static_cast<std::size_t>(unknown[k].rigid);
-            add_identity(block, 0, walk_.rigid().mass[body]);
-            const Mat3 inertia = walk_.rigid().spins.inverse_inertia[body].inverse();
+            add_identity(block, 0, traversal_.rigid().mass[body]);
+            const Mat3 inertia = traversal_.rigid().spins.inverse_inertia[body].inverse();
             for (Index c = 0; c < 3; ++c)
                 for (Index r = 0; r < 3; ++r) block.column(3 + c)[3 + r] = inertia(r, c);
         }
@@ -209,8 +209,8 @@ void BodyOperator::assemble_deforming(BodyEquations& equations, std::size_t begi
     std::ranges::fill_n(square.inverse.data, static_cast<std::ptrdiff_t>(numbers) * numbers, Real(0));
     for (Index l = 0; l < count; ++l)
         for (Index k = 0; k < count; ++k) {
-            const Mat3 response = walk_.response(unknown[begin + static_cast<std::size_t>(k)].row,
-                                                 unknown[begin + static_cast<std::size_t>(l)].row);
+            const Index node = unknown[begin + std::size_t(k)].row, pushed_node = unknown[begin + std::size_t(l)].row;
+            const Mat3 response = traversal_.response(node, pushed_node);
             for (Index c = 0; c < 3; ++c)
                 for (Index r = 0; r < 3; ++r) square.matrix.column(3 * l + c)[3 * k + r] = response(r, c);
         }
@@ -218,28 +218,28 @@ void BodyOperator::assemble_deforming(BodyEquations& equations, std::size_t begi
     if (factor_dense(square.matrix, square.pivot)) solve_dense(square.matrix, square.pivot, square.inverse);
     for (Index l = 0; l < count; ++l)
         for (Index k = 0; k < count; ++k) {
-            const Unknown &row = unknown[begin + static_cast<std::size_t>(k)],
-                          &column = unknown[begin + static_cast<std::size_t>(l)];
+            const Unknown &row = unknown[begin + std::size_t(k)], &column = unknown[begin + std::size_t(l)];
             const DenseBlock block = equations.factor().block(row.part, column.part);
             for (Index c = 0; c < 3; ++c)
                 for (Index r = 0; r < 3; ++r)
-                    block.column(column.place + c)[row.place + r] = square.inverse.column(3 * l + c)[3 * k + r];
+                    block.column(column.first_entry + c)[row.first_entry + r] =
+                        square.inverse.column(3 * l + c)[3 * k + r];
         }
 }
 
 void BodyOperator::gather(BodyEquations& equations, Column<Real>& velocity) const {
-    for (const Unknown& of : equations.unknown()) {
-        Real* const to = velocity.data() + equations.factor().first(of.part) + static_cast<std::size_t>(of.place);
+    for (const Unknown& entry : equations.unknown()) {
+        Real* const target = velocity.data() + equations.factor().first(entry.part) + std::size_t(entry.first_entry);
         const auto put = [&](Real* at, const Vec4& v) { std::copy_n(v.data(), 3, at); };
-        const Vec4* const row = memory_.velocity.data() + of.row;
-        if (is_rigid(of)) {
-            put(to, row[0]);
-            put(to + 3, row[1]);
-        } else if (of.slot == no_index) {
-            put(to, *row);
+        const Vec4* const row = memory_.velocity.data() + entry.row;
+        if (is_rigid(entry)) {
+            put(target, row[0]);
+            put(target + 3, row[1]);
+        } else if (entry.slot == no_index) {
+            put(target, *row);
         } else {
-            const Vec4* const whole = memory_.velocity.data() + of.slot;
-            put(to, *row + whole[0] + cross(whole[1], padded(walk_.arm(of.row))));
+            const Vec4* const frame = memory_.velocity.data() + entry.slot;
+            put(target, *row + frame[0] + cross(frame[1], padded(traversal_.arm(entry.row))));
         }
     }
 }
@@ -248,13 +248,13 @@ namespace {
 
 /// Impulse of Coulomb's law for a contact that the impulse z would stop, its derivative with respect to z, and the
 /// state of the contact.
-struct Answer {
+struct LawImpulse {
     Vec3 impulse;
     Mat3 derivative;
     bool open = false;
-    Vec3 way = Vec3::Zero();  // sliding direction; zero if the contact does not slide
+    Vec3 sliding_direction = Vec3::Zero();  // zero if the contact does not slide
 };
-Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
+LawImpulse coulomb_response(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     if (mu.ties())
         return {project_tie(z, normal, mu), mu.stick == 0 ? Mat3(normal * normal.transpose()) : Mat3::Identity()};
     const Real along = normal.dot(z);
@@ -285,120 +285,121 @@ Mat3 sticking(const RigidPart& part) {
 /// Impulse that the law of a contact gives for the velocity u and the trial impulse `start - u / soft`, and its
 /// derivative. If friction depends on the direction, this is Coulomb's law in scaled variables; the derivative is with
 /// respect to `-u / soft`.
-Answer answer_at(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
-    if (part.across == 1) return answer_coulomb_at(start - u / soft, part.frame[0].head<3>(), mu);
+LawImpulse law_impulse(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
+    if (part.across == 1) return coulomb_response(start - u / soft, part.frame[0].head<3>(), mu);
     const Mat3 scaled = scaled_frame(part);
     Vec3 z = matrix_of(part.frame).transpose() * start;
     z[2] /= part.across;
-    Answer answer = answer_coulomb_at(z - scaled.transpose() * u / soft, Vec3::UnitX(), mu);
-    answer.impulse = scaled * answer.impulse;
-    answer.derivative = scaled * answer.derivative * scaled.transpose();
-    answer.way = matrix_of(part.frame) * answer.way;
-    return answer;
+    LawImpulse response = coulomb_response(z - scaled.transpose() * u / soft, Vec3::UnitX(), mu);
+    response.impulse = scaled * response.impulse;
+    response.derivative = scaled * response.derivative * scaled.transpose();
+    response.sliding_direction = matrix_of(part.frame) * response.sliding_direction;
+    return response;
 }
 
 }  // namespace
 
 /// Evaluates the motion `present`. Sets the impulses to P(start - u / (softness D)), where u is the contact velocity, D
 /// the mobility, and P(z) the impulse of Coulomb's law for a contact that the impulse z would stop. `softness` is the
-/// compliance of contacts as a fraction of D. Sets the velocities of the region and `answered` to the motion that these
-/// impulses produce. With d = answered - present and the inertia matrix K, sets the right-hand side to K d and returns
+/// compliance of contacts as a fraction of D. Sets the velocities of the region and `produced` to the motion that these
+/// impulses produce. With d = produced - present and the inertia matrix K, sets the right-hand side to K d and returns
 /// the merit d . K d [J].
 ///
-/// Unless `wanted` is `value`, also builds the matrix. If `wanted` is `turns`, and the region has implicit bodies, also
-/// marks contacts whose sliding direction is opposite to that in the last matrix; stop_turned then changes their
-/// equations.
-Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted) {
-    const bool with_matrix = wanted != Evaluation::value;
+/// Unless `evaluation` is `value`, also builds the matrix. If `evaluation` is `turns`, and the region has implicit
+/// bodies, also marks contacts whose sliding direction is opposite to that in the last matrix; stop_reversed then
+/// changes their equations.
+Real BodyOperator::evaluate_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation evaluation) {
+    const bool with_matrix = evaluation != Evaluation::value;
     if (with_matrix) equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
         const auto at = static_cast<std::size_t>(i);
         const Real soft = equations.softness * contact(i).diagonal;
         const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
-        const Answer answer = answer_at(part(i), start[at].head<3>(), u, soft, limits(i));
-        memory_.impulse[at] = padded(answer.impulse);
+        const LawImpulse response = law_impulse(part(i), start[at].head<3>(), u, soft, limits(i));
+        memory_.impulse[at] = padded(response.impulse);
         if (!with_matrix) continue;
-        equations.answer[at] = answer.derivative;
-        if (runs_ && wanted == Evaluation::turns) equations.stops[at] = equations.way[at].dot(answer.way) < 0 ? 1 : 0;
-        equations.way[at] = answer.way;
-        if (answer.open) continue;
-        equations.add(i, (equations.stops[at] != 0 ? sticking(part(i)) : answer.derivative) / soft);
+        equations.derivative[at] = response.derivative;
+        if (runs_ && evaluation == Evaluation::turns)
+            equations.stops[at] = equations.sliding_direction[at].dot(response.sliding_direction) < 0 ? 1 : 0;
+        equations.sliding_direction[at] = response.sliding_direction;
+        if (response.open) continue;
+        equations.add(i, (equations.stops[at] != 0 ? sticking(part(i)) : response.derivative) / soft);
     }
-    const Real lack = compare_motion(equations, start);
-    if (with_matrix) stop_turned(equations, start);
-    return lack;
+    const Real merit = compare_motion(equations, start);
+    if (with_matrix) stop_reversed(equations, start);
+    return merit;
 }
 
 /// Changes the right-hand side for contacts whose sliding direction has reversed. The velocity of such a contact has
 /// passed through sticking, whose range of velocities is small for hard contacts. Newton steps for sliding would jump
 /// over this range again and again. So the matrix treats these contacts as sticking, and the right-hand side contains
 /// the impulses that would stop them.
-void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
+void BodyOperator::stop_reversed(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
-        if (equations.stops[at] == 0 || equations.way[at].isZero(0)) continue;
+        if (equations.stops[at] == 0 || equations.sliding_direction[at].isZero(0)) continue;
         const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
         const Vec3 stopping = start[at].head<3>() - sticking(part(i)) * u / (equations.softness * contact(i).diagonal);
         equations.add_right(i, stopping - memory_.impulse[at].head<3>());
     }
 }
 
-/// Updates the velocities of the region and `answered` from the impulses. With d = answered - present and the inertia
+/// Updates the velocities of the region and `produced` from the impulses. With d = produced - present and the inertia
 /// matrix K, sets the right-hand side to K d and returns d . K d [J]
 Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
     if (equations.rigid_modes)
         push_rigid_modes(start);
     else
         refresh();
-    gather(equations, equations.answered);
+    gather(equations, equations.produced);
     for (std::size_t k = 0; k < equations.change.size(); ++k)
-        equations.change[k] = equations.answered[k] - equations.present[k];
+        equations.change[k] = equations.produced[k] - equations.present[k];
     return equations.set_right(equations.change.span());
 }
 
 /// First step of a round after a completed round. It assumes that each contact sticks, slides or is open as in the last
-/// matrix. Returns the merit from answer_motion for the new motion, or nothing if the factorisation broke down.
-std::optional<Real> BodyOperator::go_on_as_before(BodyEquations& equations, std::span<const Vec4> start) {
+/// matrix. Returns the merit from evaluate_motion for the new motion, or nothing if the factorisation broke down.
+std::optional<Real> BodyOperator::step_with_last_states(BodyEquations& equations, std::span<const Vec4> start) {
     equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
         const auto at = static_cast<std::size_t>(i);
-        const Mat3 answer = equations.answer[at] / (equations.softness * contact(i).diagonal);
+        const Mat3 response = equations.derivative[at] / (equations.softness * contact(i).diagonal);
         const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
-        memory_.impulse[at] = padded(Vec3(start[at].head<3>() - answer * u));
-        equations.add(i, answer);
+        memory_.impulse[at] = padded(Vec3(start[at].head<3>() - response * u));
+        equations.add(i, response);
     }
     compare_motion(equations, start);
     if (!equations.factor().solve()) return std::nullopt;
     const std::span<const Real> step = equations.factor().right();
     for (std::size_t k = 0; k < equations.present.size(); ++k) equations.present[k] += step[k];
-    return answer_motion(equations, start, Evaluation::turns);
+    return evaluate_motion(equations, start, Evaluation::turns);
 }
 
-/// One Newton step from the present motion, whose merit is `lack`, with a line search on the merit from answer_motion.
-/// It takes the first step length of 1, 1/2, 1/4, ... that lowers the merit below 0.9 times `lack`, otherwise the
-/// length with the smallest merit. If the step stops contacts, it may take length 1 although the merit rises, a few
-/// times per round. Returns the new merit, or nothing if the factorisation broke down.
-std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
+/// One Newton step from the present motion, whose merit is `merit`, with a line search on the merit from
+/// evaluate_motion. It takes the first step length of 1, 1/2, 1/4, ... that lowers the merit below 0.9 times `merit`,
+/// otherwise the length with the smallest merit. If the step stops contacts, it may take length 1 although the merit
+/// rises, a few times per round. Returns the new merit, or nothing if the factorisation broke down.
+std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real merit) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
-    constexpr Index most_rises = 3;
+    constexpr Index max_rises = 3;
     const bool stops = std::ranges::find(equations.stops, 1) != equations.stops.end();
     if (!equations.factor().solve()) return std::nullopt;
     std::ranges::copy(equations.present, equations.before.begin());
     std::ranges::copy(equations.factor().right(), equations.step.begin());
-    const auto go = [&](Real length) {
+    const auto move_to = [&](Real length) {
         for (std::size_t k = 0; k < equations.present.size(); ++k)
             equations.present[k] = equations.before[k] + length * equations.step[k];
     };
     Real least = infinity, best_length = 1;
     for (int k = 0; k < halvings; ++k) {
         const Real length = std::ldexp(Real(1), -k);
-        go(length);
-        const Real next = answer_motion(equations, start, k == 0 ? Evaluation::turns : Evaluation::value);
-        if (k == 0 && next < enough * lack) return next;  // the usual case
-        if (k == 0 && stops && equations.rises < most_rises) {
+        move_to(length);
+        const Real next = evaluate_motion(equations, start, k == 0 ? Evaluation::turns : Evaluation::value);
+        if (k == 0 && next < enough * merit) return next;  // the usual case
+        if (k == 0 && stops && equations.rises < max_rises) {
             ++equations.rises;
             return next;
         }
@@ -406,10 +407,10 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
             least = next;
             best_length = length;
         }
-        if (next < enough * lack) break;
+        if (next < enough * merit) break;
     }
-    go(best_length);
-    return answer_motion(equations, start, Evaluation::matrix);
+    move_to(best_length);
+    return evaluate_motion(equations, start, Evaluation::matrix);
 }
 
 namespace {
@@ -418,16 +419,16 @@ namespace {
 // compliance as a fraction of the mobility D. A smaller value needs fewer rounds, but more steps per round. Regions of
 // soft bodies converge at the largest value, stiff bodies at a hundredth of it, and a light body under a heavy one at a
 // small fraction of the mass ratio. The softness is therefore adapted to the number of steps of the last round.
-constexpr Real most_softness = 0.3, least_softness = 1e-9;
+constexpr Real max_softness = 0.3, min_softness = 1e-9;
 // Start value for regions with deformable bodies. Rounds converge there even at a small softness, since contacts that
-// reverse their sliding are stopped (stop_turned).
+// reverse their sliding are stopped (stop_reversed).
 constexpr Real first_softness = 0.03;
 
 /// Softness (compliance of contacts) of the next round if the last round took this number of steps.
 Real softness_after(Index steps, Real softness, bool deforming) {
     constexpr Index few = 4;
     const Real change = steps <= few / 2 ? 0.03 : steps > few ? 1.0 : deforming ? 0.1 : 0.3;
-    return std::max(least_softness, change * softness);
+    return std::max(min_softness, change * softness);
 }
 
 }  // namespace
@@ -438,9 +439,8 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
     constexpr Real enough = 0.1;
     // If the error has not decreased, the round must be solved more accurately: the limit is multiplied by `solved`.
     constexpr Real solved = 1e-3;
-    // largest number of steps in a round; a longer round is unlikely to converge soon
-    constexpr Index most_in_round = 14;
-    constexpr Real softer = 10;  // factor by which the softness grows after a round that did not converge
+    constexpr Index max_steps_in_round = 14;  // a longer round is unlikely to converge soon
+    constexpr Real softer = 10;               // factor by which the softness grows after a round that did not converge
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
@@ -450,28 +450,28 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
     equations.offset.resize(static_cast<std::size_t>(size()));
     for (Index i = 0; i < size(); ++i) equations.offset[static_cast<std::size_t>(i)] = contact(i).offset.head<3>();
     SolveResult result{0, error, error <= tolerance};
-    equations.softness = runs_ ? first_softness : most_softness;
+    equations.softness = runs_ ? first_softness : max_softness;
     Real error_at_start = error;
     Index in_round = 0;
-    bool goes_on = false;  // true: the next round begins with the contact states of the last round
+    bool keeps_states = false;  // true: the next round begins with the contact states of the last round
     equations.start_round();
-    std::optional<Real> lack = answer_motion(equations, start, Evaluation::matrix);
+    std::optional<Real> merit = evaluate_motion(equations, start, Evaluation::matrix);
     while (!result.converged && result.iterations < limit) {
         ++result.iterations;
         ++in_round;
-        lack = goes_on ? go_on_as_before(equations, start) : step_motion(equations, start, *lack);
-        if (!lack) break;
-        goes_on = false;
+        merit = keeps_states ? step_with_last_states(equations, start) : step_motion(equations, start, *merit);
+        if (!merit) break;
+        keeps_states = false;
         const Real now = this->error();
         if (now < result.error) {
             result.error = now;
             result.converged = now <= tolerance;
             std::ranges::copy(memory_.impulse, best.begin());
         }
-        const Real asked = enough * scale_ * error_at_start;
+        const Real merit_bound = enough * scale_ * error_at_start;
         const Index steps = in_round;
-        const bool ended = std::sqrt(*lack) <= (now < error_at_start ? asked : solved * asked);
-        if (!ended && steps < most_in_round) continue;
+        const bool ended = std::sqrt(*merit) <= (now < error_at_start ? merit_bound : solved * merit_bound);
+        if (!ended && steps < max_steps_in_round) continue;
         in_round = 0;
         // The next round starts from the present impulses and the motion they produce. A round that did not converge is
         // restarted with a larger softness.
@@ -480,17 +480,17 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
             error_at_start = now;
             std::ranges::copy(memory_.impulse, start.begin());
         } else {
-            if (!(equations.softness < most_softness)) break;
-            equations.softness = std::min(most_softness, softer * equations.softness);
+            if (!(equations.softness < max_softness)) break;
+            equations.softness = std::min(max_softness, softer * equations.softness);
             std::ranges::copy(start, memory_.impulse.begin());
             refresh();
-            gather(equations, equations.answered);
+            gather(equations, equations.produced);
         }
-        std::ranges::copy(equations.answered, equations.present.begin());
-        goes_on = ended;
+        std::ranges::copy(equations.produced, equations.present.begin());
+        keeps_states = ended;
         std::ranges::fill(equations.stops, std::uint8_t(0));
         equations.rises = 0;
-        if (!goes_on) lack = answer_motion(equations, start, Evaluation::matrix);
+        if (!keeps_states) merit = evaluate_motion(equations, start, Evaluation::matrix);
     }
     std::ranges::copy(best, memory_.impulse.begin());
     refresh();

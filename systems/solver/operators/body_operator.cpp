@@ -17,7 +17,7 @@ Vec4 in_frame(const Columns3& frame, const Vec4& vector) {
 
 /// Impulse r of one contact or tie in world axes. b = u - W_ii r is the velocity without this impulse, where
 /// u is the contact velocity and W_ii the diagonal block of the contact.
-Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
+Vec4 solve_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
     if (mu.ties()) {
         if (mu.stick == 0) return -(part.frame[0].dot(b) / part.block.normal) * part.frame[0];
         return padded(-(matrix_of(part.mobility).inverse() * b.head<3>()));
@@ -37,37 +37,37 @@ const Vec4 first_axis{1, 0, 0, 0};
 
 }  // namespace
 
-Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
-    RigidPart& of = memory_.part[static_cast<std::size_t>(i)];
+Vec4 BodyOperator::solve_law(Index i, const Vec4& impulse, const Vec4& u) {
+    RigidPart& own_part = memory_.part[static_cast<std::size_t>(i)];
     if (const JointLaw* law = joint(i)) {
-        const Vec3 r = in_frame(of.frame, impulse).head<3>();
-        return times(of.frame, padded(law->answer(in_frame(of.frame, u).head<3>() - law->block * r)));
+        const Vec3 r = in_frame(own_part.frame, impulse).head<3>();
+        return times(own_part.frame, padded(law->solve(in_frame(own_part.frame, u).head<3>() - law->block * r)));
     }
-    if (of.across != 1 || (of.term_count > 0 && friction_ == Friction::cone))
-        return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
+    if (own_part.across != 1 || (own_part.term_count > 0 && friction_ == Friction::cone))
+        return solve_in_frame(own_part, u - times(own_part.mobility, impulse), contact(i).friction);
     // The exact step would use the diagonal block W_ii. This step uses an upper bound on the eigenvalues of W_ii
     // instead: it is exact if W_ii is a scalar times the identity, otherwise it is damped.
-    return project(i, impulse - u / of.steepest);
+    return project(i, impulse - u / own_part.steepest);
 }
 
-Real BodyOperator::push_tie(Index i, const Vec4& held, Vec4* velocity) const {
-    if (held.isZero(0)) return 0;
-    Vec4 change = -held / part(i).along_normal;
+Real BodyOperator::push_tie(Index i, const Vec4& held_velocity, Vec4* velocity) const {
+    if (held_velocity.isZero(0)) return 0;
+    Vec4 change = -held_velocity / part(i).along_normal;
     if (limits(i).stick > 0) {
-        const Mat3 mobility = walk_.undeformed_coupling(contact(i), contact(i)) + rigid_coupling(part(i), part(i));
-        change = -padded(mobility.inverse() * held.head<3>());
+        const Mat3 mobility = traversal_.undeformed_coupling(contact(i), contact(i)) + rigid_coupling(part(i), part(i));
+        change = -padded(mobility.inverse() * held_velocity.head<3>());
     }
     apply_undeformed(i, change, velocity);
-    return -change.dot(held);
+    return -change.dot(held_velocity);
 }
 
 Vec4 BodyOperator::project_in_frame(Index i, const Vec4& impulse) const {
-    const RigidPart& of = part(i);
-    Vec4 local = in_frame(of.frame, impulse);
-    local[2] /= of.across;
+    const RigidPart& own_part = part(i);
+    Vec4 local = in_frame(own_part.frame, impulse);
+    local[2] /= own_part.across;
     local = project_coulomb(local, first_axis, contact(i).friction);
-    local[2] *= of.across;
-    return times(of.frame, local);
+    local[2] *= own_part.across;
+    return times(own_part.frame, local);
 }
 
 Real BodyOperator::step(Index i, Real relaxation) {
@@ -80,7 +80,7 @@ Real BodyOperator::step(Index i, Real relaxation) {
                 memory_.impulse[static_cast<std::size_t>(k)] += change;
             });
     Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
-    Vec4 next = answer(i, impulse, velocity(i));
+    Vec4 next = solve_law(i, impulse, velocity(i));
     if (relaxation != 1) next = project(i, impulse + relaxation * (next - impulse));
     const Vec4 change = next - impulse;
     if (change.isZero(0)) return 0;
@@ -91,38 +91,39 @@ Real BodyOperator::step(Index i, Real relaxation) {
 
 void BodyOperator::list_runs() const {
     if (!runs_->listed())
-        runs_->list(memory_.contact.first(static_cast<std::size_t>(swept())), walk_, memory_.velocity.size());
+        runs_->list(memory_.contact.first(static_cast<std::size_t>(swept_count())), traversal_,
+                    memory_.velocity.size());
 }
 
-void BodyOperator::for_each_in_sweep(auto&& of) {
-    // Sweeps with and without runs share one loop, because compilers would not inline the function `of` twice.
-    const ContactRuns::Run all{0, swept(), 0, 0};
+void BodyOperator::for_each_in_sweep(auto&& visit) {
+    // Sweeps with and without runs share one loop, because compilers would not inline the function `visit` twice.
+    const ContactRuns::Run all{0, swept_count(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {
         list_runs();
         runs = runs_->runs();
     }
     for (const ContactRuns::Run& run : runs) {
-        for (Index i = run.begin; i < run.end; ++i) of(i);
-        if (runs_) runs_->spread(run, walk_, memory_.velocity.data());
+        for (Index i = run.begin; i < run.end; ++i) visit(i);
+        if (runs_) runs_->spread(run, traversal_, memory_.velocity.data());
     }
 }
 
 void BodyOperator::apply(Index i, const Vec4& impulse) {
     Vec4* const velocity = memory_.velocity.data();
     if (runs_)
-        runs_->apply(static_cast<std::size_t>(i), contact(i), walk_, impulse, velocity);
+        runs_->apply(static_cast<std::size_t>(i), contact(i), traversal_, impulse, velocity);
     else
-        walk_.apply_undeformed(contact(i), impulse, velocity);
+        traversal_.apply_undeformed(contact(i), impulse, velocity);
     apply_to_rigid(part(i), impulse, velocity);
 }
 
 Real BodyOperator::sweep(Real relaxation) {
     Real change = 0;
     for_each_in_sweep([&](Index i) { change += step(i, relaxation); });
-    SweepChange of_cables;
-    sweep_cables(relaxation, of_cables);
-    return change + of_cables.size;
+    SweepChange cable_change;
+    sweep_cables(relaxation, cable_change);
+    return change + cable_change.size;
 }
 
 SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
@@ -175,13 +176,13 @@ void BodyOperator::sweep_cables(Real relaxation, SweepChange& sum) {
             const Vec4 change = padded(law.at_point(law.before, p));
             const auto i = static_cast<Index>(first + p);
             if (nodes != nullptr)
-                walk_.collect(contact(i), change, nodes, velocity);
+                traversal_.collect(contact(i), change, nodes, velocity);
             else
-                walk_.apply_undeformed(contact(i), change, velocity);
+                traversal_.apply_undeformed(contact(i), change, velocity);
             apply_to_rigid(part(i), change, velocity);
             memory_.impulse[first + p] += change;
         }
-        if (nodes != nullptr) runs_->spread_sums(walk_, velocity);
+        if (nodes != nullptr) runs_->spread_sums(traversal_, velocity);
         if (!memory_.workspace[1].empty()) law.read(memory_.workspace[1].subspan(first), law.previous);
         for (std::size_t s = 0; s < law.segments(); ++s) law.previous[s] = law.impulse[s] - law.previous[s];
         sum.size += law.product(law.before, law.before);
@@ -195,7 +196,7 @@ void BodyOperator::extrapolate(Real factor) {
 }
 
 Real BodyOperator::squared_residual(Index i) const {
-    if (i >= swept()) {
+    if (i >= swept_count()) {
         // The residual of a cable counts once, at its first point that impulses can move.
         for (const Index cable : memory_.cable)
             if (memory_.cable_law[static_cast<std::size_t>(cable)].moving == i)
@@ -228,15 +229,15 @@ Real BodyOperator::squared_residual(Index i) const {
 void BodyOperator::add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
     Vec4* const sum = runs_ ? runs_->sums(velocity.size()).data() : nullptr;
     for (Index i = 0; i < size(); ++i) {
-        const Vec4& of = impulse[static_cast<std::size_t>(i)];
-        if (of.isZero(0)) continue;
+        const Vec4& own_impulse = impulse[static_cast<std::size_t>(i)];
+        if (own_impulse.isZero(0)) continue;
         if (runs_)
-            walk_.collect(contact(i), of, sum, velocity.data());
+            traversal_.collect(contact(i), own_impulse, sum, velocity.data());
         else
-            walk_.apply_undeformed(contact(i), of, velocity.data());
-        apply_to_rigid(part(i), of, velocity.data());
+            traversal_.apply_undeformed(contact(i), own_impulse, velocity.data());
+        apply_to_rigid(part(i), own_impulse, velocity.data());
     }
-    if (runs_) runs_->spread_sums(walk_, velocity.data());
+    if (runs_) runs_->spread_sums(traversal_, velocity.data());
 }
 
 void BodyOperator::assemble(Eigen::MatrixXd& matrix) const {
@@ -244,7 +245,7 @@ void BodyOperator::assemble(Eigen::MatrixXd& matrix) const {
     for (Index i = 0; i < size(); ++i)
         for (Index j = 0; j < size(); ++j)
             matrix.block<3, 3>(3 * i, 3 * j) =
-                walk_.coupling(contact(i), contact(j)) + rigid_coupling(part(i), part(j));
+                traversal_.coupling(contact(i), contact(j)) + rigid_coupling(part(i), part(j));
 }
 
 Real BodyOperator::sweep_cost() const {

@@ -41,10 +41,10 @@ class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, Body
 public:
     /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses. `pool`
     /// lends memory for Newton steps, `runs` for sweeps over implicit bodies.
-    BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
-                 RunPool& runs)
-        : Base(memory, friction, scale, walk), pool_(&pool) {
-        if (!walk.any_deforms()) return;
+    BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& traversal,
+                 NewtonPool& pool, RunPool& runs)
+        : Base(memory, friction, scale, traversal), pool_(&pool) {
+        if (!traversal.any_deforms()) return;
         runs_ = runs.lease();
         runs_->start();
     }
@@ -82,7 +82,7 @@ public:
     /// Applies an impulse to rigid bodies, clusters and nodes with their own mass. Implicit bodies move rigidly: their
     /// deformations do not change.
     [[gnu::always_inline]] void apply_undeformed(Index i, const Vec4& impulse, Vec4* velocity) const {
-        walk_.apply_undeformed(contact(i), impulse, velocity);
+        traversal_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
     /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
@@ -107,8 +107,9 @@ public:
 
     /// Returns the law of a joint block, or null for a contact or a point of a cable.
     const JointLaw* joint(Index i) const {
-        return i < memory_.contacts || i >= swept() ? nullptr
-                                                    : &memory_.joint[static_cast<std::size_t>(i - memory_.contacts)];
+        return i < memory_.contacts || i >= swept_count()
+                   ? nullptr
+                   : &memory_.joint[static_cast<std::size_t>(i - memory_.contacts)];
     }
 
     /// Rate at which the mimic equation of the blocks i and i + 1 is violated: the sum of their coefficients times axis
@@ -142,8 +143,8 @@ private:
     /// Copies the velocities of the region to `velocity`, in the order of the unknowns.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
     enum class Evaluation { value, matrix, turns };
-    Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted);
-    void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
+    Real evaluate_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation evaluation);
+    void stop_reversed(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
     /// moves_rigidly(): true if the rigid motion of the body of `term` is an unknown. is_unknown(): true if the
@@ -153,16 +154,16 @@ private:
     BodyEquations* rigid_mode_memory();
     void start_rigid_round(BodyEquations& equations);
     void push_rigid_modes(std::span<const Vec4> start);
-    /// Step of the split impulse that makes the part `held` of the pseudo velocity of a tie zero.
-    Real push_tie(Index i, const Vec4& held, Vec4* velocity) const;
-    std::optional<Real> go_on_as_before(BodyEquations& equations, std::span<const Vec4> start);
-    std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
+    /// Step of the split impulse that makes the part `held_velocity` of the pseudo velocity of a tie zero.
+    Real push_tie(Index i, const Vec4& held_velocity, Vec4* velocity) const;
+    std::optional<Real> step_with_last_states(BodyEquations& equations, std::span<const Vec4> start);
+    std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real merit);
     void list_unknowns(BodyEquations& equations) const;
     void list_parts(BodyEquations& equations) const;
     void list_pushes(BodyEquations& equations) const;
     void couple_parts(BodyEquations& equations) const;
     void assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const;
-    Index name_of_node(Index node) const;
+    Index body_id_of_node(Index node) const;
     bool touches_clusters() const;
     bool is_rigid(const BodyEquations::Unknown& unknown) const;
     bool deforms(const BodyEquations::Unknown& unknown) const;
@@ -171,14 +172,14 @@ private:
     Vec4 project_in_frame(Index i, const Vec4& impulse) const;
     /// Impulse of contact i from its law while all other impulses are fixed. It is exact for the friction cone; for the
     /// pyramid the step is damped.
-    Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
+    Vec4 solve_law(Index i, const Vec4& impulse, const Vec4& u);
     /// Solves contact i and applies the change of its impulse. Returns change . W_ii change, where W_ii is the diagonal
     /// block of contact i [J]
     Real step(Index i, Real relaxation);
     /// Number of contacts and joint blocks. The points of cables have the indices after them.
-    Index swept() const { return memory_.contacts + static_cast<Index>(memory_.joint.size()); }
-    /// Calls `of` for all contacts and joint blocks in ascending order.
-    void for_each_in_sweep(auto&& of);
+    Index swept_count() const { return memory_.contacts + static_cast<Index>(memory_.joint.size()); }
+    /// Calls `visit` for all contacts and joint blocks in ascending order.
+    void for_each_in_sweep(auto&& visit);
     /// Solves the cables one after the other. Adds their part of the change in this sweep to `sum`.
     void sweep_cables(Real relaxation, SweepChange& sum);
     /// Computes the present impulses and rates of a cable from the region's impulses and velocities, and stores them in

@@ -13,12 +13,12 @@ namespace skerry {
 
 /// True if the rigid motion of the body of `term` is an unknown. A held body has no rigid motion.
 bool BodyOperator::moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const {
-    if (!walk_.deforms(term.row)) return true;
-    return equations.rigid_modes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
+    if (!traversal_.deforms(term.row)) return true;
+    return equations.rigid_modes && traversal_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
 }
 
 bool BodyOperator::is_unknown(const BodyEquations& equations, Index node) const {
-    return !(equations.rigid_modes && walk_.moves_with_rigid(node));
+    return !(equations.rigid_modes && traversal_.moves_with_rigid(node));
 }
 
 /// With few contacts per body, sweeps alone are faster than sweeps with the coarse correction. Piles of cubes with 27
@@ -30,8 +30,8 @@ bool BodyOperator::corrects_rigid_modes() const {
     Index bodies = 0;
     for (const RigidPart& part : memory_.part)
         for (const RigidTerm& term : part.terms()) {
-            const bool held = !(walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0);
-            any_free = any_free || (walk_.deforms(term.row) && !held);
+            const bool held = !(traversal_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0);
+            any_free = any_free || (traversal_.deforms(term.row) && !held);
             bodies = std::max(bodies, term.slot / 2 + 1);
         }
     return any_free && size() >= many * bodies;
@@ -79,7 +79,7 @@ SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index 
     constexpr Real enough = 0.01;
     // Another round follows if the error after a round is below this fraction of the error before the round.
     constexpr Real gain = 0.5;
-    constexpr Index most_in_round = 14;  // upper limit on the number of steps per round
+    constexpr Index max_steps_in_round = 14;  // upper limit on the number of steps per round
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = rigid_mode_memory();
     if (equations == nullptr) return result;
@@ -91,13 +91,13 @@ SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index 
         std::ranges::copy(memory_.impulse, start.begin());
         start_rigid_round(*equations);
         equations->start_round();
-        std::optional<Real> lack = answer_motion(*equations, start, Evaluation::matrix);
-        for (Index steps = 0; lack && steps < most_in_round && result.iterations < limit; ++steps) {
-            if (std::sqrt(*lack) <= enough * scale_ * result.error) break;
+        std::optional<Real> merit = evaluate_motion(*equations, start, Evaluation::matrix);
+        for (Index steps = 0; merit && steps < max_steps_in_round && result.iterations < limit; ++steps) {
+            if (std::sqrt(*merit) <= enough * scale_ * result.error) break;
             ++result.iterations;
-            lack = step_motion(*equations, start, *lack);
+            merit = step_motion(*equations, start, *merit);
         }
-        if (!lack) break;
+        if (!merit) break;
         refresh();
         const Real now = this->error();
         goes_on = now < gain * result.error && now > tolerance && result.iterations < limit;

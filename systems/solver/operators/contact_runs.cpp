@@ -30,17 +30,17 @@ void add_columns(std::span<const Real* const> column, std::span<const Real> fact
 }
 
 Vec4 node_velocity(const Mat3& turn, std::span<const Real> in_frame, std::size_t node) {
-    const Vec3 of_node(in_frame[3 * node], in_frame[3 * node + 1], in_frame[3 * node + 2]);
-    return padded(turn * of_node);
+    const Vec3 velocity(in_frame[3 * node], in_frame[3 * node + 1], in_frame[3 * node + 2]);
+    return padded(turn * velocity);
 }
 
 }  // namespace
 
-void SpreadImpulses::add(const ImplicitCoupling& coupling, std::size_t body, Index place, const Vec4& impulse) {
+void SpreadImpulses::add(const ImplicitCoupling& coupling, std::size_t body, Index touched_index, const Vec4& impulse) {
     if (impulse.isZero(0)) return;
     const Vec3 in_frame = coupling.impulse_turn[body] * impulse.head<3>();
     const std::size_t numbers = coupling.numbers(body);
-    const Real* const columns = coupling.columns(body, place).data();
+    const Real* const columns = coupling.columns(body, touched_index).data();
     for (std::size_t c = 0; c < 3; ++c) {
         column_.push_back(columns + c * numbers);
         factor_.push_back(in_frame[static_cast<Index>(c)]);
@@ -53,28 +53,28 @@ std::span<const Real> SpreadImpulses::velocities(std::size_t numbers) {
     return sum_;
 }
 
-void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
+void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGroups& traversal, std::size_t rows,
                        std::size_t most_nodes) {
     run_.clear();
     patch_.clear();
     node_.clear();
     block_.clear();
     moved_ = 0;
-    near_.resize(contact.size());
-    entry_.assign(rows, no_index);
+    moved_nodes_.resize(contact.size());
+    node_index_.assign(rows, no_index);
     const auto count = static_cast<Index>(contact.size());
     for (Index begin = 0, end = 0; begin < count; begin = end) {
         const std::size_t first = node_.size();
         for (; end < count; ++end) {
-            const LumpedContact& of = contact[static_cast<std::size_t>(end)];
+            const LumpedContact& lumped = contact[static_cast<std::size_t>(end)];
             const std::size_t before = node_.size();
-            for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) {
-                Index& entry = entry_[static_cast<std::size_t>(of.node[a])];
+            for (std::size_t a = 0; a < static_cast<std::size_t>(lumped.node_count); ++a) {
+                Index& entry = node_index_[static_cast<std::size_t>(lumped.node[a])];
                 const auto e = static_cast<std::size_t>(entry);
-                const bool there = entry != no_index && e >= first && e < node_.size() && node_[e] == of.node[a];
-                if (there || walk.deforming_place(of.node[a]) == no_index) continue;
+                const bool listed = entry != no_index && e >= first && e < node_.size() && node_[e] == lumped.node[a];
+                if (listed || traversal.touched_index(lumped.node[a]) == no_index) continue;
                 entry = static_cast<Index>(node_.size());
-                node_.push_back(of.node[a]);
+                node_.push_back(lumped.node[a]);
             }
             if (node_.size() - first > most_nodes && end > begin) {
                 node_.resize(before);
@@ -82,74 +82,75 @@ void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGrou
             }
         }
         Run run{begin, end, patch_.size(), patch_.size()};
-        list_patches(contact, walk, first, run);
+        list_patches(contact, traversal, first, run);
         run_.push_back(run);
     }
     pending_.assign(node_.size(), Vec4::Zero());
 }
 
-void ContactRuns::list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk,
+void ContactRuns::list_patches(std::span<const LumpedContact> contact, const ThroughGroups& traversal,
                                std::size_t first_node, Run& run) {
     std::sort(node_.begin() + static_cast<std::ptrdiff_t>(first_node), node_.end());
     // Sorting by rows of the region groups the nodes by body, because the touched nodes of a body are consecutive rows.
     for (std::size_t begin = first_node; begin < node_.size();) {
-        const std::size_t body = walk.body_of(node_[begin]);
+        const std::size_t body = traversal.body_of(node_[begin]);
         std::size_t end = begin;
-        for (; end < node_.size() && walk.body_of(node_[end]) == body; ++end)
-            entry_[static_cast<std::size_t>(node_[end])] = static_cast<Index>(end);
-        patch_.push_back({begin, end - begin, block_.size(), body, node_[begin] - walk.deforming_place(node_[begin])});
-        add_blocks(walk, patch_.back());
+        for (; end < node_.size() && traversal.body_of(node_[end]) == body; ++end)
+            node_index_[static_cast<std::size_t>(node_[end])] = static_cast<Index>(end);
+        patch_.push_back(
+            {begin, end - begin, block_.size(), body, node_[begin] - traversal.touched_index(node_[begin])});
+        add_blocks(traversal, patch_.back());
         begin = end;
     }
     run.last_patch = patch_.size();
     for (Index i = run.begin; i < run.end; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        const LumpedContact& of = contact[at];
-        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) {
-            Near& near = near_[at][a];
-            near.count = 0;
-            if (walk.deforming_place(of.node[a]) == no_index) continue;
-            const auto self = static_cast<std::size_t>(entry_[static_cast<std::size_t>(of.node[a])]);
+        const LumpedContact& lumped = contact[at];
+        for (std::size_t a = 0; a < static_cast<std::size_t>(lumped.node_count); ++a) {
+            MovedNodes& target = moved_nodes_[at][a];
+            target.count = 0;
+            if (traversal.touched_index(lumped.node[a]) == no_index) continue;
+            const auto self = static_cast<std::size_t>(node_index_[static_cast<std::size_t>(lumped.node[a])]);
             std::size_t p = run.first_patch;
             while (self >= patch_[p].first + patch_[p].count) ++p;
             const Patch& patch = patch_[p];
-            near = {patch.first, patch.count, self, patch.first_block + (self - patch.first) * patch.count};
+            target = {patch.first, patch.count, self, patch.first_block + (self - patch.first) * patch.count};
             moved_ += static_cast<Real>(patch.count);
         }
     }
 }
 
-void ContactRuns::add_blocks(const ThroughGroups& walk, const Patch& patch) {
+void ContactRuns::add_blocks(const ThroughGroups& traversal, const Patch& patch) {
     const std::span<const Index> node = std::span<const Index>(node_).subspan(patch.first, patch.count);
     for (const Index from : node)
         for (const Index to : node) {
             PaddedMat3 block;
-            block << walk.deforming().block(patch.body, to - patch.first_row, from - patch.first_row),
+            block << traversal.deforming().block(patch.body, to - patch.first_row, from - patch.first_row),
                 Eigen::RowVector3d::Zero();
             block_.push_back(block);
         }
-    const std::size_t touched = walk.deforming().nodes[patch.body].size();
+    const std::size_t touched = traversal.deforming().nodes[patch.body].size();
     if (patch.count < touched) moved_ += static_cast<Real>(patch.count * touched);
 }
 
-void ContactRuns::apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& walk, const Vec4& impulse,
-                        Vec4* velocity) {
+void ContactRuns::apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& traversal,
+                        const Vec4& impulse, Vec4* velocity) {
     for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
-        const Near& near = near_[i][a];
-        if (near.count == 0) {
-            walk.apply_to_node(contact, a, impulse, velocity);
+        const MovedNodes& target = moved_nodes_[i][a];
+        if (target.count == 0) {
+            traversal.apply_to_node(contact, a, impulse, velocity);
             continue;
         }
         const Vec4 weighted = contact.weight[a] * impulse;
-        pending_[near.self] += weighted;
-        const Index* const node = node_.data() + near.first;
-        const PaddedMat3* const block = block_.data() + near.row;
-        for (std::size_t k = 0; k < near.count; ++k) velocity[node[k]].noalias() += block[k] * weighted.head<3>();
+        pending_[target.self] += weighted;
+        const Index* const node = node_.data() + target.first;
+        const PaddedMat3* const block = block_.data() + target.row;
+        for (std::size_t k = 0; k < target.count; ++k) velocity[node[k]].noalias() += block[k] * weighted.head<3>();
     }
 }
 
-void ContactRuns::spread(const Run& run, const ThroughGroups& walk, Vec4* velocity) {
-    const ImplicitCoupling& coupling = walk.deforming();
+void ContactRuns::spread(const Run& run, const ThroughGroups& traversal, Vec4* velocity) {
+    const ImplicitCoupling& coupling = traversal.deforming();
     for (std::size_t p = run.first_patch; p < run.last_patch; ++p) {
         const Patch& patch = patch_[p];
         const std::size_t touched = coupling.nodes[patch.body].size();
@@ -173,14 +174,14 @@ void ContactRuns::spread(const Run& run, const ThroughGroups& walk, Vec4* veloci
     }
 }
 
-void ContactRuns::spread_sums(const ThroughGroups& walk, Vec4* velocity) {
-    const ImplicitCoupling& coupling = walk.deforming();
+void ContactRuns::spread_sums(const ThroughGroups& traversal, Vec4* velocity) {
+    const ImplicitCoupling& coupling = traversal.deforming();
     for (std::size_t begin = 0; begin < sum_.size();) {
-        if (walk.deforming_place(static_cast<Index>(begin)) == no_index) {
+        if (traversal.touched_index(static_cast<Index>(begin)) == no_index) {
             ++begin;
             continue;
         }
-        const std::size_t body = walk.body_of(static_cast<Index>(begin)), touched = coupling.nodes[body].size();
+        const std::size_t body = traversal.body_of(static_cast<Index>(begin)), touched = coupling.nodes[body].size();
         impulses_.start();
         for (std::size_t k = 0; k < touched; ++k) impulses_.add(coupling, body, static_cast<Index>(k), sum_[begin + k]);
         if (!impulses_.empty()) {

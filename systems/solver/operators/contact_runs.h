@@ -26,7 +26,7 @@ public:
         column_.clear();
         factor_.clear();
     }
-    void add(const ImplicitCoupling& coupling, std::size_t body, Index place, const Vec4& impulse);
+    void add(const ImplicitCoupling& coupling, std::size_t body, Index touched_index, const Vec4& impulse);
     bool empty() const { return factor_.empty(); }
     /// Velocities of the touched nodes in the frame of the body, three numbers per node [m/s]. Valid until the next
     /// call.
@@ -52,14 +52,14 @@ public:
     bool listed() const { return !run_.empty(); }
     /// Lists the runs. `most_nodes` limits the number of nodes per run. A small limit spreads impulses to all nodes
     /// more often; a large limit moves more nodes at each contact.
-    void list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
+    void list(std::span<const LumpedContact> contact, const ThroughGroups& traversal, std::size_t rows,
               std::size_t most_nodes = 24);
     std::span<const Run> runs() const { return run_; }
     /// Applies an impulse of contact `i` to the nodes of its run. The caller applies it to rigid bodies.
-    void apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& walk, const Vec4& impulse,
+    void apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& traversal, const Vec4& impulse,
                Vec4* velocity);
     /// Applies the summed impulses of a run to the touched nodes outside of the run. Call it at the end of the run.
-    void spread(const Run& run, const ThroughGroups& walk, Vec4* velocity);
+    void spread(const Run& run, const ThroughGroups& traversal, Vec4* velocity);
     /// Number of node velocities that a sweep updates, counting repeated updates.
     Real moved() const { return moved_; }
 
@@ -70,7 +70,7 @@ public:
         return sum_;
     }
     /// Applies the impulses in sums() to the implicit bodies.
-    void spread_sums(const ThroughGroups& walk, Vec4* velocity);
+    void spread_sums(const ThroughGroups& traversal, Vec4* velocity);
 
 private:
     /// Nodes of one body in the contacts of a run: `count` entries of node_ from `first` on. Their response blocks
@@ -82,24 +82,24 @@ private:
     };
     /// Nodes of the run that an impulse on one node of a contact moves. `count` is 0 if this node is on no implicit
     /// body.
-    struct Near {
+    struct MovedNodes {
         // `first`, `self`: indices in node_; `row`: index in block_ of the first of `count` blocks
         std::size_t first, count, self, row;
     };
 
-    void list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t first_node,
+    void list_patches(std::span<const LumpedContact> contact, const ThroughGroups& traversal, std::size_t first_node,
                       Run& run);
-    void add_blocks(const ThroughGroups& walk, const Patch& patch);
+    void add_blocks(const ThroughGroups& traversal, const Patch& patch);
 
     Column<Run> run_;
     Column<Patch> patch_;
-    Column<Index> node_;                // rows of the region, ascending within a patch
-    Column<Vec4> pending_;              // impulse sum by index in node_ [N s]
-    Column<std::array<Near, 4>> near_;  // by contact
-    Column<PaddedMat3> block_;          // responses of node velocities to impulses on nodes, in world axes [1/kg]
+    Column<Index> node_;                             // rows of the region, ascending within a patch
+    Column<Vec4> pending_;                           // impulse sum by index in node_ [N s]
+    Column<std::array<MovedNodes, 4>> moved_nodes_;  // by contact
+    Column<PaddedMat3> block_;  // responses of node velocities to impulses on nodes, in world axes [1/kg]
     // Index in node_ at which each row of the region was listed last. It is outdated if node_ now holds another row at
     // this index.
-    Column<Index> entry_;
+    Column<Index> node_index_;
     Column<Vec4> sum_;
     SpreadImpulses impulses_;
     Real moved_ = 0;

@@ -1,6 +1,6 @@
-// Traversals (walks) of the contacts of a region. A walk defines the visiting order of the contacts, the number of
-// threads, and the effect of an impulse on the velocities. Walks are types: shared code is written once and compiled
-// separately for each walk.
+// Traversals of the contacts of a region. A traversal defines the visiting order of the contacts, the number of
+// threads, and the effect of an impulse on the velocities. Traversals are types: shared code is written once and
+// compiled separately for each traversal.
 #pragma once
 
 #include <concepts>
@@ -15,28 +15,30 @@ namespace skerry {
 /// A visiting order. It calls `body` with ranges [begin, end) that together cover the indices [0, count) of the order.
 /// Contacts that share a node are never visited concurrently, and always in the same order.
 template <class W>
-concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
+concept RegionOrder = requires(const W traversal, std::size_t count, void (*body)(std::size_t, std::size_t),
                                Real (*part)(std::size_t, std::size_t)) {
     // number in the region of the contact with this index in the visiting order
-    { walk.number_of(count) } -> std::convertible_to<std::size_t>;
-    walk.contacts(count, body);
-    walk.nodes(count, body);
-    { walk.template sum<Real>(count, part) } -> std::same_as<Real>;  // sum over the contacts, always in the same order
+    { traversal.number_of(count) } -> std::convertible_to<std::size_t>;
+    traversal.contacts(count, body);
+    traversal.nodes(count, body);
+    {
+        traversal.template sum<Real>(count, part)
+        } -> std::same_as<Real>;  // sum over the contacts, always in the same order
 };
 
 /// A visiting order together with the effect of impulses on nodes.
 template <class W>
-concept RegionWalk = RegionOrder<W> &&
-    requires(const W walk, const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
+concept RegionTraversal = RegionOrder<W> &&
+    requires(const W traversal, const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
     // true if every moving node has its own mass and belongs to no cluster
     { W::own_masses } -> std::convertible_to<bool>;
-    walk.apply(contact, impulse, velocity);                     // velocities of the region's nodes += M^-1 J^T impulse
-    { walk.coupling(contact, contact) } -> std::same_as<Real>;  // scalar block J M^-1 J^T of two contacts [1/kg]
+    traversal.apply(contact, impulse, velocity);  // velocities of the region's nodes += M^-1 J^T impulse
+    { traversal.coupling(contact, contact) } -> std::same_as<Real>;  // scalar block J M^-1 J^T of two contacts [1/kg]
 };
 
 /// Visiting order with one thread: ascending contact numbers.
 struct OneThread {
-    std::size_t number_of(std::size_t place) const { return place; }
+    std::size_t number_of(std::size_t position) const { return position; }
     template <class Body>
     void contacts(std::size_t count, Body&& body) const {
         body(std::size_t{0}, count);
@@ -53,7 +55,7 @@ struct OneThread {
 
 static_assert(RegionOrder<OneThread>);
 
-/// Traversal (walk) by one thread in ascending order, for regions in which every node has its own mass.
+/// Traversal by one thread in ascending order, for regions in which every node has its own mass.
 struct InOrder : OneThread {
     static constexpr bool own_masses = true;
 
@@ -63,6 +65,6 @@ struct InOrder : OneThread {
     Real coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b); }
 };
 
-static_assert(RegionWalk<InOrder>);
+static_assert(RegionTraversal<InOrder>);
 
 }  // namespace skerry

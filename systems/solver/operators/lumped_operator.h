@@ -14,18 +14,18 @@ struct LumpedMemory : ContactMemory {
 };
 
 /// Operator of a region with lumped masses. For a given order of the contacts, the bits of the impulses do not depend
-/// on the type Walk of the traversal, but the bits of sums do.
-template <RegionWalk Walk>
-class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory> {
-    using Base = RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory>;
+/// on the type of the traversal, but the bits of sums do.
+template <RegionTraversal Traversal>
+class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Traversal>, Traversal, LumpedMemory> {
+    using Base = RegionOperatorBase<LumpedOperatorBy<Traversal>, Traversal, LumpedMemory>;
     friend Base;
 
 public:
     using Base::size;
 
     /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses.
-    LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Walk& walk = {})
-        : Base(memory, friction, scale, walk) {}
+    LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Traversal& traversal = {})
+        : Base(memory, friction, scale, traversal) {}
 
     void extrapolate(Real factor);
     Real sweep(Real relaxation);
@@ -42,14 +42,14 @@ public:
     /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
     /// [J]
     Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
-        return push_contact(contact(i), bias, velocity, impulse, apply_by(walk_));
+        return push_contact(contact(i), bias, velocity, impulse, apply_by(traversal_));
     }
 
 private:
     using Base::contact;
     using Base::friction_;
     using Base::memory_;
-    using Base::walk_;
+    using Base::traversal_;
 
     // Functions that the base class calls.
     bool moves(Index i) const { return contact(i).node_count > 0; }
@@ -61,23 +61,23 @@ private:
         return add_node_velocities(contact(i), velocity, Vec4::Zero());
     }
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
-        walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) walk_.apply(memory_.contact[i], impulse[i], velocity.data());
+        traversal_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) traversal_.apply(memory_.contact[i], impulse[i], velocity.data());
         });
     }
     void settle();
 
-    static auto apply_by(const Walk& walk) {
-        return [&walk](const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
-            walk.apply(contact, impulse, velocity);
+    static auto apply_by(const Traversal& traversal) {
+        return [&traversal](const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
+            traversal.apply(contact, impulse, velocity);
         };
     }
     /// Returns a function that solves contact i. It holds copies of all pointers and constants: otherwise the compiler
     /// must reload them after each vector store.
     auto step(Real relaxation) const {
         return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation,
-                walk = walk_](std::size_t i, Vec4& impulse) {
-            return solve_contact(contact[i], friction, relaxation, velocity, impulse, apply_by(walk));
+                traversal = traversal_](std::size_t i, Vec4& impulse) {
+            return solve_contact(contact[i], friction, relaxation, velocity, impulse, apply_by(traversal));
         };
     }
 
@@ -89,42 +89,42 @@ private:
 
 using LumpedOperator = LumpedOperatorBy<InOrder>;
 
-template <RegionWalk Walk>
-void LumpedOperatorBy<Walk>::settle() {
+template <RegionTraversal Traversal>
+void LumpedOperatorBy<Traversal>::settle() {
     if (!waiting_) return;
     waiting_ = false;
-    walk_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
+    traversal_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor_, memory_.impulse, memory_.workspace[1]);
     });
 }
 
-template <RegionWalk Walk>
-void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
+template <RegionTraversal Traversal>
+void LumpedOperatorBy<Traversal>::extrapolate(Real factor) {
     settle();
     // Velocities are an affine function of the impulses, so extrapolating both by one factor keeps them consistent.
-    walk_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
+    traversal_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
     });
     waiting_ = true;
     factor_ = factor;
 }
 
-template <RegionWalk Walk>
-Real LumpedOperatorBy<Walk>::sweep(Real relaxation) {
+template <RegionTraversal Traversal>
+Real LumpedOperatorBy<Traversal>::sweep(Real relaxation) {
     settle();
-    return walk_.template sum<Real>(memory_.contact.size(),
-                                    [this, step = step(relaxation)](std::size_t begin, std::size_t end) {
-                                        const std::span<Vec4> impulse = memory_.impulse;
-                                        Real change = 0;
-                                        for (std::size_t i = begin; i < end; ++i) change += step(i, impulse[i]);
-                                        return change;
-                                    });
+    return traversal_.template sum<Real>(memory_.contact.size(),
+                                         [this, step = step(relaxation)](std::size_t begin, std::size_t end) {
+                                             const std::span<Vec4> impulse = memory_.impulse;
+                                             Real change = 0;
+                                             for (std::size_t i = begin; i < end; ++i) change += step(i, impulse[i]);
+                                             return change;
+                                         });
 }
 
-template <RegionWalk Walk>
-SweepChange LumpedOperatorBy<Walk>::accelerated_sweep(Real relaxation) {
+template <RegionTraversal Traversal>
+SweepChange LumpedOperatorBy<Traversal>::accelerated_sweep(Real relaxation) {
     const bool waiting = std::exchange(waiting_, false);
-    return walk_.template sum<SweepChange>(
+    return traversal_.template sum<SweepChange>(
         memory_.contact.size(), [this, waiting, step = step(relaxation)](std::size_t begin, std::size_t end) {
             const std::span<const LumpedContact> contacts = memory_.contact;
             const std::span<Vec4> impulse = memory_.impulse, previous = memory_.workspace[1];
@@ -142,13 +142,13 @@ SweepChange LumpedOperatorBy<Walk>::accelerated_sweep(Real relaxation) {
         });
 }
 
-template <RegionWalk Walk>
-void LumpedOperatorBy<Walk>::assemble(Eigen::MatrixXd& matrix) const {
+template <RegionTraversal Traversal>
+void LumpedOperatorBy<Traversal>::assemble(Eigen::MatrixXd& matrix) const {
     matrix.setZero(3 * size(), 3 * size());
     for (Index i = 0; i < size(); ++i)
         for (Index j = 0; j < size(); ++j) {
             const LumpedContact &a = memory_.contact[i], &b = memory_.contact[j];
-            matrix.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(walk_.coupling(a, b));
+            matrix.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(traversal_.coupling(a, b));
         }
 }
 

@@ -32,7 +32,7 @@ public:
         SweepChange sum;
         for (std::size_t i = 0; i < contacts.size(); ++i) {
             const LumpedContact& contact = contacts[i];
-            const Real next = wanted(contact, impulse[i], relaxation, velocity), change = next - impulse[i];
+            const Real next = unclamped(contact, impulse[i], relaxation, velocity), change = next - impulse[i];
             if (change == 0) continue;
             apply_impulse(contact, change * contact.normal, velocity);
             impulse[i] = next;
@@ -47,7 +47,7 @@ public:
         Real sum = 0;
         for (std::size_t i = 0; i < region_.contact.size(); ++i) {
             const Real present = memory_.impulse[i],
-                       rest = present - wanted(region_.contact[i], present, 1, region_.velocity.data());
+                       rest = present - unclamped(region_.contact[i], present, 1, region_.velocity.data());
             sum += region_.contact[i].diagonal * rest * rest;
         }
         return sum == 0 ? 0 : std::sqrt(sum) / scale_;
@@ -82,7 +82,7 @@ public:
     }
 
 private:
-    static Real wanted(const LumpedContact& contact, Real impulse, Real relaxation, const Vec4* velocity) {
+    static Real unclamped(const LumpedContact& contact, Real impulse, Real relaxation, const Vec4* velocity) {
         const Real approach = contact.normal.dot(contact_velocity(contact, velocity));
         const Real next = impulse - relaxation * contact.inverse_diagonal * approach;
         return next <= 0 ? 0 : next;  // with this form of the comparison NaN stays NaN

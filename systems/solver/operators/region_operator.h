@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk. A region has one velocity
-/// row per node, plus two rows per rigid body.
+/// Memory of one region, owned by the caller. Spans by contact are in the order of the traversal. A region has one
+/// velocity row per node, plus two rows per rigid body.
 struct ContactMemory {
     std::span<const LumpedContact> contact;
     std::span<Vec4> impulse;      // [N s]
@@ -28,7 +28,7 @@ struct ContactMemory {
 /// Base class of operators. `Own` derives from this class and adds sweeps. It also defines moves() (whether a contact
 /// can move anything), squared_residual() (the contact's term in the squared error), free_velocity() (velocity without
 /// impulses) and add_response() (velocity change by impulses).
-template <class Own, RegionOrder Walk, class Memory>
+template <class Own, RegionOrder Traversal, class Memory>
 class RegionOperatorBase {
 public:
     using Number = Real;
@@ -53,22 +53,23 @@ public:
     }
     void remember() {
         own().settle();
-        walk_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
+        traversal_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) memory_.workspace[1][i] = memory_.impulse[i];
         });
-        walk_.nodes(memory_.velocity.size(), [this](std::size_t begin, std::size_t end) {
+        traversal_.nodes(memory_.velocity.size(), [this](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) memory_.scratch[n] = memory_.velocity[n];
         });
     }
     /// Relative error e_nat of the present impulses over all contacts (docs/methods/errors.md 2).
     Real error() {
         own().settle();
-        const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
-            Real part = 0;
-            for (std::size_t i = begin; i < end; ++i)
-                if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
-            return part;
-        });
+        const Real sum =
+            traversal_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
+                Real part = 0;
+                for (std::size_t i = begin; i < end; ++i)
+                    if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
+                return part;
+            });
         // Near the underflow threshold, `sum` and scale_ have no accurate digits, and scale_ may be zero.
         constexpr Real least_energy = std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();  // [J]
         if (sum < least_energy) return 0;
@@ -79,7 +80,7 @@ public:
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     void residual(std::span<Vec4> out) {
         own().settle();
-        walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+        traversal_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const auto at = static_cast<Index>(i);
                 out[i] = own().moves(at) ? Vec4(-own().velocity(at)) : Vec4(Vec4::Zero());
@@ -87,11 +88,11 @@ public:
         });
     }
     void multiply(std::span<const Vec4> in, std::span<Vec4> out) {
-        walk_.nodes(memory_.scratch.size(), [this](std::size_t begin, std::size_t end) {
+        traversal_.nodes(memory_.scratch.size(), [this](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) memory_.scratch[n].setZero();
         });
         own().add_response(in, memory_.scratch);
-        walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+        traversal_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 out[i] = own().velocity_at(static_cast<Index>(i), memory_.scratch.data());
         });
@@ -105,14 +106,14 @@ public:
     Friction law() const { return friction_; }
 
 protected:
-    RegionOperatorBase(const Memory& memory, Friction friction, Real scale, const Walk& walk)
-        : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
+    RegionOperatorBase(const Memory& memory, Friction friction, Real scale, const Traversal& traversal)
+        : memory_(memory), friction_(friction), scale_(scale), traversal_(traversal) {}
 
     const LumpedContact& contact(Index i) const { return memory_.contact[i]; }
     /// Applies a postponed extrapolation. Operators that postpone extrapolations hide this function.
     void settle() {}
     void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) {
-        walk_.nodes(memory_.node.size(), [&](std::size_t begin, std::size_t end) {
+        traversal_.nodes(memory_.node.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) velocity[n] = own().free_velocity(n);
         });
         own().add_response(impulse, velocity);
@@ -121,7 +122,7 @@ protected:
     Memory memory_;
     Friction friction_;
     Real scale_;  // number by which the error e_nat is divided [sqrt(J)]
-    Walk walk_;
+    Traversal traversal_;
 
 private:
     Own& own() { return static_cast<Own&>(*this); }

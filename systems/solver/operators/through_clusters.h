@@ -1,4 +1,4 @@
-// Traversal (walk) of a region whose contacts touch clusters. An impulse on a node moves all nodes of its cluster
+// Traversal of a region whose contacts touch clusters. An impulse on a node moves all nodes of its cluster
 // (docs/methods/clusters.md 4).
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Walk with one thread, in ascending order of the contacts. All nodes of a touched cluster must be consecutive rows of
-/// the region, in the order of the cluster, including nodes without contacts.
+/// Traversal with one thread, in ascending order of the contacts. All nodes of a touched cluster must be consecutive
+/// rows of the region, in the order of the cluster, including nodes without contacts.
 class ThroughClusters : public OneThread {
 public:
     static constexpr bool own_masses = false;
@@ -40,10 +40,10 @@ public:
             velocity[n] += contact.step[a] * impulse;
             return;
         }
-        const Index place = clusters_->place[global];
+        const Index index_in_cluster = clusters_->index_in_cluster[global];
         const Vec4 weighted = contact.weight[a] * impulse;
-        Vec4* const first = velocity + (n - place);
-        const std::span<const Real> row = clusters_->row(cluster, place);
+        Vec4* const first = velocity + (n - index_in_cluster);
+        const std::span<const Real> row = clusters_->row(cluster, index_in_cluster);
         for (std::size_t k = 0; k < row.size(); ++k) first[k] += row[k] * weighted;
     }
     Real coupling_of_nodes(const LumpedContact& a, std::size_t k, const LumpedContact& b, std::size_t l) const {
@@ -53,7 +53,9 @@ public:
         const Index other = node_[static_cast<std::size_t>(b.node[l])];
         if (clusters_->cluster(other) != cluster) return 0;
         return a.weight[k] * b.weight[l] *
-               clusters_->row(cluster, clusters_->place[global])[static_cast<std::size_t>(clusters_->place[other])];
+               clusters_->row(
+                   cluster,
+                   clusters_->index_in_cluster[global])[static_cast<std::size_t>(clusters_->index_in_cluster[other])];
     }
 
 private:
@@ -61,7 +63,7 @@ private:
     std::span<const Index> node_;
 };
 
-static_assert(RegionWalk<ThroughClusters>);
+static_assert(RegionTraversal<ThroughClusters>);
 static_assert(ContactOperator<LumpedOperatorBy<ThroughClusters>>);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Traversal (walk) of a region whose contacts touch rigid bodies. It supports nodes with their own mass, nodes of
+// Traversal of a region whose contacts touch rigid bodies. It supports nodes with their own mass, nodes of
 // clusters, and nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). The
 // velocities of implicit nodes are relative to the motion of the frame.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// Traversal (walk) by one thread, in ascending order of the contacts. The touched nodes of an implicit body must be
+/// Traversal by one thread, in ascending order of the contacts. The touched nodes of an implicit body must be
 /// consecutive rows of the region, in the order of ImplicitCoupling.
 class ThroughGroups : public OneThread {
 public:
@@ -25,7 +25,7 @@ public:
     /// the weighted impulse to `sum`, the input of SpreadImpulses, by node of the region.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
-            if (deforming_place(contact.node[a]) == no_index)
+            if (touched_index(contact.node[a]) == no_index)
                 clusters_.apply_to_node(contact, a, impulse, velocity);
             else
                 sum[contact.node[a]] += contact.weight[a] * impulse;
@@ -41,7 +41,7 @@ public:
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
-            if (deforming_place(contact.node[a]) == no_index) clusters_.apply_to_node(contact, a, impulse, velocity);
+            if (touched_index(contact.node[a]) == no_index) clusters_.apply_to_node(contact, a, impulse, velocity);
     }
     /// Contribution of the nodes to the block of W for contacts a and b [1/kg]
     Mat3 coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, true); }
@@ -68,16 +68,16 @@ public:
     Mat3 response(Index n, Index m) const {
         const std::size_t r = body_of(m);
         const Mat3 turned = rigid_->spins.inverse_inertia[r] * cross_matrix(arm(m));
-        return implicit_->coupling->block(r, deforming_place(n), deforming_place(m)) +
+        return implicit_->coupling->block(r, touched_index(n), touched_index(m)) +
                rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }
     const ImplicitCoupling& deforming() const { return *implicit_->coupling; }
     /// Index of node `n` among the touched nodes of its implicit body, or no_index.
-    Index deforming_place(Index n) const {
+    Index touched_index(Index n) const {
         const Index row = node_[static_cast<std::size_t>(n)] == no_index
                               ? no_index
                               : implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
-        return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
+        return row == no_index ? no_index : implicit_->coupling->touched_index[static_cast<std::size_t>(row)];
     }
     /// Row of RigidBodyTable of the body that owns node `n` (rigid, or implicit with its frame).
     std::size_t body_of(Index n) const {
@@ -89,16 +89,16 @@ private:
         Mat3 sum = Mat3::Zero();
         Real lumped = 0;
         for (std::size_t k = 0; k < static_cast<std::size_t>(a.node_count); ++k) {
-            const Index place = deforming_place(a.node[k]);
+            const Index index = touched_index(a.node[k]);
             Mat3 in_frame = Mat3::Zero();
             for (std::size_t l = 0; l < static_cast<std::size_t>(b.node_count); ++l) {
-                const Index other = deforming_place(b.node[l]);
-                if (place == no_index && other == no_index)
+                const Index other = touched_index(b.node[l]);
+                if (index == no_index && other == no_index)
                     lumped += clusters_.coupling_of_nodes(a, k, b, l);
-                else if (deformed && place != no_index && other != no_index && body_of(a.node[k]) == body_of(b.node[l]))
-                    in_frame += b.weight[l] * implicit_->coupling->block_in_frame(body_of(b.node[l]), place, other);
+                else if (deformed && index != no_index && other != no_index && body_of(a.node[k]) == body_of(b.node[l]))
+                    in_frame += b.weight[l] * implicit_->coupling->block_in_frame(body_of(b.node[l]), index, other);
             }
-            if (deformed && place != no_index)
+            if (deformed && index != no_index)
                 sum += a.weight[k] * implicit_->coupling->to_world(body_of(a.node[k]), in_frame);
         }
         return sum + lumped * Mat3::Identity();

@@ -37,18 +37,19 @@ void BodyRegion::take_joint_impulses(const RegionStage& stage) const {
         const Vec3& last = stage.out.joint_impulse[static_cast<std::size_t>(joint[k])];
         memory.impulse[i] = times(memory.part[i].frame, padded(last));
     }
-    for (const Index of : cable) take_cable_impulses(stage, of, memory);
+    for (const Index cable_row : cable) take_cable_impulses(stage, cable_row, memory);
 }
 
 void BodyRegion::hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const {
     if (joint.empty() || outcome.status == RegionStatus::not_finite) return;
-    Real off = 0;  // squared energy norm of the correction [J]
+    Real correction = 0;  // squared energy norm of the correction [J]
     for (std::size_t k = 0; k < joint.size(); ++k) {
         const JointBlock& block = stage.inputs.joints[static_cast<std::size_t>(joint[k])];
-        if (block.mimic.coefficient == 0) off += correct_joint(stage, block, memory.velocity, joint_place(stage, k));
+        if (block.mimic.coefficient == 0)
+            correction += correct_joint(stage, block, memory.velocity, loaded_joint(stage, k));
     }
     const Real small = tolerance * scale;
-    if (off <= small * small && !stage.settings.fixed_iterations) return;
+    if (correction <= small * small && !stage.settings.fixed_iterations) return;
     const Index before = outcome.iterations;
     outcome = sweep_region(stage, *this, op);
     outcome.iterations += before;
@@ -72,8 +73,8 @@ void BodyRegion::write_stencil(const RegionStage& stage, const Stencil& stencil,
         Vec3& next = stage.out.velocity_next[static_cast<std::size_t>(node)];
         next = memory.velocity[slot].head<3>() + memory.velocity[slot + 1].head<3>().cross(arm);
         if (stage.inputs.implicit.row(node, bodies.nodes) != no_index)
-            next +=
-                memory.velocity[static_cast<std::size_t>(stage.memory.place[static_cast<std::size_t>(node)])].head<3>();
+            next += memory.velocity[static_cast<std::size_t>(stage.memory.node_index[static_cast<std::size_t>(node)])]
+                        .head<3>();
     }
     write_deforming(stage, memory, i);
 }
@@ -86,18 +87,18 @@ void BodyRegion::write_joints(const RegionStage& stage) const {
         const auto block = static_cast<std::size_t>(joint[k]);
         const Vec3 impulse = matrix_of(part.frame).transpose() * memory.impulse[i].head<3>();
         stage.out.joint_impulse[block] = impulse;
-        const JointPlaceInRegion place = joint_place(stage, k);
-        if (!place.law.axis_free) continue;
-        const Vec4 u = add_rigid_velocities(part, memory.velocity.data(), place.contact.offset);
+        const LoadedJoint loaded = loaded_joint(stage, k);
+        if (!loaded.law.axis_free) continue;
+        const Vec4 u = add_rigid_velocities(part, memory.velocity.data(), loaded.contact.offset);
         stage.out.axis_impulse[block] =
-            parts_of(place.law.axis, place.law.axis_mobility, part.frame[2].dot(u), impulse.z());
+            parts_of(loaded.law.axis, loaded.law.axis_mobility, part.frame[2].dot(u), impulse.z());
     }
     std::size_t i = row.size() + joint.size();
-    for (const Index of : cable) {
-        for (const Stencil& stencil :
-             rows_of(stage.inputs.cables.stencil, stage.inputs.cables.block[static_cast<std::size_t>(of)].points))
+    for (const Index cable_row : cable) {
+        for (const Stencil& stencil : rows_of(stage.inputs.cables.stencil,
+                                              stage.inputs.cables.block[static_cast<std::size_t>(cable_row)].points))
             write_stencil(stage, stencil, i++);
-        write_cable(stage, of, memory);
+        write_cable(stage, cable_row, memory);
     }
 }
 

@@ -47,7 +47,7 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     }
     Real push_work(const RegionStage& stage) const;
 
-    JointPlaceInRegion joint_place(const RegionStage& stage, std::size_t k) const {
+    LoadedJoint loaded_joint(const RegionStage& stage, std::size_t k) const {
         RegionMemory& data = stage.memory;
         const std::size_t at = static_cast<std::size_t>(base) + row.size() + k;
         return {data.contact[at], data.rigid_part[at], data.joint_law[at - data.contact_rows]};
@@ -55,7 +55,8 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
 };
 
 inline BodyOperator operator_of(const RegionStage& stage, const BodyRegion& region) {
-    return {region.memory, stage.settings.friction, region.scale, region.walk, stage.memory.newton, stage.memory.runs};
+    return {region.memory,    stage.settings.friction, region.scale,
+            region.traversal, stage.memory.newton,     stage.memory.runs};
 }
 
 /// Contents of a region: rows of ContactTable, rows of JointBlockTable, and indices in SolvedCables::block.

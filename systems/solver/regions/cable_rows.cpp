@@ -16,7 +16,8 @@ CableLaw& law_of(const RegionStage& stage, Index cable) {
 }
 
 /// Writes the mobility matrix: of the segments of a cable, or of the three impulse components of a tie.
-void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughGroups& walk, std::span<Real> mobility) {
+void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughGroups& traversal,
+                   std::span<Real> mobility) {
     const std::size_t count = law.segments(), first = static_cast<std::size_t>(law.first),
                       points = static_cast<std::size_t>(law.points);
     std::ranges::fill(mobility, Real(0));
@@ -28,16 +29,16 @@ void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughG
     };
     for (std::size_t a = 0; a < points; ++a)
         for (std::size_t b = 0; b < points; ++b) {
-            const Mat3 block = walk.coupling(memory.contact[first + a], memory.contact[first + b]) +
+            const Mat3 block = traversal.coupling(memory.contact[first + a], memory.contact[first + b]) +
                                rigid_coupling(memory.part[first + a], memory.part[first + b]);
             if (law.is_tie) {
                 Eigen::Map<Mat3>(mobility.data()) += block;
                 continue;
             }
-            for_each_segment(a, [&](std::size_t row, Real of_row) {
-                for_each_segment(b, [&](std::size_t column, Real of_column) {
+            for_each_segment(a, [&](std::size_t row, Real row_sign) {
+                for_each_segment(b, [&](std::size_t column, Real column_sign) {
                     mobility[row * count + column] +=
-                        of_row * of_column * law.direction[row].dot(block * law.direction[column]);
+                        row_sign * column_sign * law.direction[row].dot(block * law.direction[column]);
                 });
             });
         }
@@ -50,19 +51,19 @@ void add_to_sums(const CableLaw& law, LoadSums& sums) {
         const Real mobility = law.far_mobility[0];
         if (!(mobility > 0)) return;
         Real rate = 0;
-        for (const Real of_segment : law.rate) rate += of_segment;
+        for (const Real segment_rate : law.rate) rate += segment_rate;
         sums.moving += rate * rate / mobility;
     }
-    const Real asked = law.squared_residual();
-    if (asked == 0) return;
+    const Real squared_residual = law.squared_residual();
+    if (squared_residual == 0) return;
     sums.separating = false;
-    sums.asked += asked;
+    sums.squared_residual += squared_residual;
 }
 
 }  // namespace
 
-void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& walk, Index first,
-                LoadSums& sums) {
+void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& traversal,
+                Index first, LoadSums& sums) {
     RegionMemory& data = stage.memory;
     const CableBlock& block = block_of(stage, cable);
     const auto points = static_cast<std::size_t>(block.points.size()),
@@ -77,7 +78,7 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
            .points = block.points.size(),
            .is_tie = block.is_tie,
            .by_length = block.by_length,
-           .wanted = block.wanted,
+           .prescribed = block.prescribed,
            .direction = stage.inputs.cables.direction.subspan(begin, count),
            .most_ratio = stage.inputs.cables.most_ratio.subspan(begin, count),
            .mobility = mobility,
@@ -89,7 +90,7 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
     const Index last = first + law.points - 1;
     while (law.moving < last && memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0)
         ++law.moving;
-    find_mobility(law, memory, walk, mobility);
+    find_mobility(law, memory, traversal, mobility);
     if (!law.is_tie) law.prepare();
     std::ranges::fill(law.impulse, Real(0));
     const auto velocity = [&](std::size_t p) {

@@ -12,9 +12,9 @@
 namespace skerry {
 
 /// Fills the CableLaw of a cable. The points of the cable must already be loaded, from index `first` of memory.contact
-/// on. `walk`: traversal of the region. Adds the cable to the sums for the error scale.
-void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& walk, Index first,
-                LoadSums& sums);
+/// on. `traversal`: traversal of the region. Adds the cable to the sums for the error scale.
+void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& traversal,
+                Index first, LoadSums& sums);
 
 /// Sets the impulses of the points of a cable to those of the last step.
 void take_cable_impulses(const RegionStage& stage, Index cable, const BodyMemory& memory);

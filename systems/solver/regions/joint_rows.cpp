@@ -32,19 +32,20 @@ struct BodyMotion {
 
 /// Half of the acceleration of the joint error in the frame of the second body while both bodies move freely. Times h
 /// it is the second-order part of the mean rate of the error in the step [m/s^2 or rad/s^2]
-Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion& second) {
-    if (of_spins) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
-    const Vec3 of_first = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
-    const Vec3 of_second = second.spin.cross(second.turning()) - second.spin_rate.cross(second.arm);
-    return (of_first + of_second) / 2 - second.spin.cross(first.at_point() - second.velocity);
+Vec3 half_acceleration(bool rotational, const BodyMotion& first, const BodyMotion& second) {
+    if (rotational) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
+    const Vec3 first_acceleration = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
+    const Vec3 second_acceleration = second.spin.cross(second.turning()) - second.spin_rate.cross(second.arm);
+    return (first_acceleration + second_acceleration) / 2 - second.spin.cross(first.at_point() - second.velocity);
 }
 
 /// Upper bound of the speed at which a joint error is corrected, which avoids jerks: recovery_speed (translation) or 1
 /// rad/s (rotation), plus the rotational speeds of both bodies [m/s or rad/s]
-Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& first, const BodyMotion& second) {
+Real max_correction_speed(const RegionStage& stage, bool rotational, const BodyMotion& first,
+                          const BodyMotion& second) {
     constexpr Real turning = 1;  // [rad/s]
-    return of_spins ? turning + first.spin.norm() + second.spin.norm()
-                    : stage.settings.recovery_speed + first.turning().norm() + second.turning().norm();
+    return rotational ? turning + first.spin.norm() + second.spin.norm()
+                      : stage.settings.recovery_speed + first.turning().norm() + second.turning().norm();
 }
 
 /// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
@@ -63,30 +64,30 @@ void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds)
 
 /// Limits, motor and passive forces of a joint axis as bounds of its velocity and impulse. `mobility` is the mobility
 /// of the axis [1/kg or 1/(kg m^2)].
-AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
+AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real max_speed) {
     AxisBounds bounds;
-    bounds.low = std::min((axis.lower - axis.coordinate) / h, fastest);
-    bounds.high = std::max((axis.upper - axis.coordinate) / h, -fastest);
+    bounds.low = std::min((axis.lower - axis.coordinate) / h, max_speed);
+    bounds.high = std::max((axis.upper - axis.coordinate) / h, -max_speed);
     add_passive(axis, mobility, h, bounds);
     if (axis.drive == JointDrive::none) return bounds;
     bounds.most = axis.kick * axis.motor.most;
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
-    const Real way = axis.motor.target - axis.coordinate;
-    // Greatest speed from which half of the motor force `most` stops within `way`: v^2 = 2 a |way| with the
+    const Real distance = axis.motor.target - axis.coordinate;
+    // Greatest speed from which half of the motor force `most` stops within `distance`: v^2 = 2 a |distance| with the
     // deceleration a = most mobility / 2. The other half is reserved for loads.
-    const Real brakes = std::sqrt(axis.motor.most * mobility * std::abs(way));
-    const Real closing = std::copysign(std::min(std::abs(way) / h, brakes), way);
-    bounds.target = std::clamp(axis.target_rate + closing, -axis.motor.most_speed, axis.motor.most_speed);
+    const Real braking_speed = std::sqrt(axis.motor.most * mobility * std::abs(distance));
+    const Real approach_speed = std::copysign(std::min(std::abs(distance) / h, braking_speed), distance);
+    bounds.target = std::clamp(axis.target_rate + approach_speed, -axis.motor.most_speed, axis.motor.most_speed);
     return bounds;
 }
 
 /// Velocity along the joint rows that corrects the position error of the joint block [m/s or rad/s]
-Vec3 pull_of(const JointBlock& block, Real h, Real fastest) {
+Vec3 correction_velocity(const JointBlock& block, Real h, Real max_speed) {
     Vec3 pull = block.error / h;
     if (!block.axis.locked) pull.z() = 0;
     const Real speed = pull.norm();
-    return speed > fastest ? Vec3(fastest / speed * pull) : pull;
+    return speed > max_speed ? Vec3(max_speed / speed * pull) : pull;
 }
 
 /// Centre of a body before and after the step, and its rotation in the step, for the given velocities.
@@ -120,20 +121,20 @@ Vec3 error_at_end(const JointBlock& block, const BodyEnd& first, const BodyEnd& 
     if (!block.turning)
         return frame.transpose() * (first.moved(block.point) - second.moved(block.point - block.frame * block.error));
     if (block.axis.locked) {
-        const Mat3 of_first = first.turn * rotation_matrix(block.frame * block.error);
-        return frame.transpose() * rotation_vector(of_first * second.turn.transpose());
+        const Mat3 first_rotation = first.turn * rotation_matrix(block.frame * block.error);
+        return frame.transpose() * rotation_vector(first_rotation * second.turn.transpose());
     }
-    const Vec3 axis = block.frame.col(2), off = block.frame * Vec3(block.error.x(), block.error.y(), 0);
-    const Vec3 of_first = std::sqrt(std::max(Real(0), 1 - off.squaredNorm())) * axis + off.cross(axis);
-    return frame.transpose() * frame.col(2).cross(first.turn * of_first);
+    const Vec3 axis = block.frame.col(2), tilt = block.frame * Vec3(block.error.x(), block.error.y(), 0);
+    const Vec3 moved_axis = std::sqrt(std::max(Real(0), 1 - tilt.squaredNorm())) * axis + tilt.cross(axis);
+    return frame.transpose() * frame.col(2).cross(first.turn * moved_axis);
 }
 
 void add_term(const RegionStage& stage, const JointBlock& block, Index body, Real sign, std::span<const Index> rigid,
               RigidPart& part) {
     const auto r = static_cast<std::size_t>(body);
     RigidTerm& term = part.term[static_cast<std::size_t>(part.term_count++)];
-    const auto place = std::find(rigid.begin(), rigid.end(), body) - rigid.begin();
-    term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = Vec4::Zero(), .spin_step = {}};
+    const auto rigid_index = std::find(rigid.begin(), rigid.end(), body) - rigid.begin();
+    term = {.row = body, .slot = static_cast<Index>(2 * rigid_index), .arm = Vec4::Zero(), .spin_step = {}};
     const Mat3& inverse_inertia = stage.inputs.rigid.spins.inverse_inertia[r];
     if (block.turning) {
         term.turn = sign;
@@ -149,14 +150,14 @@ void add_term(const RegionStage& stage, const JointBlock& block, Index body, Rea
 }  // namespace
 
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
-                const JointPlaceInRegion& place) {
+                const LoadedJoint& loaded) {
     const bool first_moves = block.first_node != no_index, second_moves = block.second_node != no_index;
     const BodyMotion first(stage.inputs.rigid, block.first, first_moves, block.point);
     const BodyMotion second(stage.inputs.rigid, block.second, second_moves, block.point);
-    const Real fastest = fastest_pull(stage, block.turning, first, second);
+    const Real max_speed = max_correction_speed(stage, block.turning, first, second);
     const bool with_axis = !block.axis.locked;
 
-    RigidPart& part = place.part;
+    RigidPart& part = loaded.part;
     part.term_count = 0;
     if (first_moves) add_term(stage, block, block.first, 1, rigid, part);
     if (second_moves) add_term(stage, block, block.second, -1, rigid, part);
@@ -164,19 +165,19 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
     const Mat3 mobility = rigid_coupling(part, part);
     part.mobility = columns_of(mobility);
     part.along_normal = part.steepest = mobility.norm();
-    place.law.mimic = block.mimic.coefficient;
-    place.law.axis_free = false;
-    if (place.law.mimic == 0) place.law.prepare(block.frame.transpose() * mobility * block.frame, with_axis);
-    place.law.axis = with_axis ? bounds_of(block.axis, place.law.axis_mobility, stage.h, fastest) : AxisBounds{};
+    loaded.law.mimic = block.mimic.coefficient;
+    loaded.law.axis_free = false;
+    if (loaded.law.mimic == 0) loaded.law.prepare(block.frame.transpose() * mobility * block.frame, with_axis);
+    loaded.law.axis = with_axis ? bounds_of(block.axis, loaded.law.axis_mobility, stage.h, max_speed) : AxisBounds{};
 
-    Vec3 bias = pull_of(block, stage.h, fastest) +
+    Vec3 bias = correction_velocity(block, stage.h, max_speed) +
                 stage.h * (block.frame.transpose() * half_acceleration(block.turning, first, second));
     if (with_axis) bias.z() = 0;
     Vec3 offset = block.frame * bias;
     if (!first_moves) offset += block.turning ? first.spin : first.at_point();
     if (!second_moves) offset -= block.turning ? second.spin : second.at_point();
 
-    LumpedContact& contact = place.contact;
+    LumpedContact& contact = loaded.contact;
     contact = LumpedContact{};
     contact.normal = part.frame[2];
     contact.offset = padded(offset);
@@ -184,11 +185,11 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
     contact.inverse_diagonal = contact.diagonal > 0 ? 1 / contact.diagonal : 0;
 }
 
-void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader) {
+void load_mimic(const LoadedJoint& first, const LoadedJoint& leader) {
     constexpr Real rounding = 1e-12;  // a sum below this fraction of the sum of absolute terms counts as mobility 0
     Real sum = 0, size = 0;
-    for (const JointPlaceInRegion* a : {&first, &leader})
-        for (const JointPlaceInRegion* b : {&first, &leader}) {
+    for (const LoadedJoint* a : {&first, &leader})
+        for (const LoadedJoint* b : {&first, &leader}) {
             const Mat3 coupling = rigid_coupling(a->part, b->part);
             const Real term =
                 a->law.mimic * b->law.mimic * a->part.frame[2].head<3>().dot(coupling * b->part.frame[2].head<3>());
@@ -205,30 +206,30 @@ void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leade
 }
 
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
-                   const JointPlaceInRegion& place) {
+                   const LoadedJoint& loaded) {
     const bool first_moves = block.first_node != no_index, second_moves = block.second_node != no_index;
-    const RigidPart& part = place.part;
+    const RigidPart& part = loaded.part;
     const Index first_slot = first_moves ? part.term[0].slot : no_index;
     const Index second_slot = second_moves ? part.term[first_moves ? 1 : 0].slot : no_index;
     const BodyEnd first(stage, block.first, first_slot, velocity), second(stage, block.second, second_slot, velocity);
     const BodyMotion first_before(stage.inputs.rigid, block.first, first_moves, block.point);
     const BodyMotion second_before(stage.inputs.rigid, block.second, second_moves, block.point);
-    const Real fastest = fastest_pull(stage, block.turning, first_before, second_before);
-    const Vec3 left = block.error - stage.h * pull_of(block, stage.h, fastest);
-    Vec3 off = (error_at_end(block, first, second) - left) / stage.h;
-    if (!block.axis.locked) off.z() = 0;
-    place.contact.offset += padded(block.frame * off);
-    return place.contact.inverse_diagonal * off.squaredNorm();
+    const Real max_speed = max_correction_speed(stage, block.turning, first_before, second_before);
+    const Vec3 remaining_error = block.error - stage.h * correction_velocity(block, stage.h, max_speed);
+    Vec3 velocity_error = (error_at_end(block, first, second) - remaining_error) / stage.h;
+    if (!block.axis.locked) velocity_error.z() = 0;
+    loaded.contact.offset += padded(block.frame * velocity_error);
+    return loaded.contact.inverse_diagonal * velocity_error.squaredNorm();
 }
 
-void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums) {
-    const Vec3 of_rows = matrix_of(place.part.frame).transpose() * u.head<3>();
-    const Vec3 residual = place.law.natural_map(Vec3::Zero(), of_rows, place.contact.diagonal);
-    sums.inverse_diagonals += place.contact.inverse_diagonal;
-    sums.moving += place.contact.inverse_diagonal * u.squaredNorm();
+void add_joint(const LoadedJoint& loaded, const Vec4& u, LoadSums& sums) {
+    const Vec3 row_velocity = matrix_of(loaded.part.frame).transpose() * u.head<3>();
+    const Vec3 residual = loaded.law.natural_map(Vec3::Zero(), row_velocity, loaded.contact.diagonal);
+    sums.inverse_diagonals += loaded.contact.inverse_diagonal;
+    sums.moving += loaded.contact.inverse_diagonal * u.squaredNorm();
     if (residual.isZero(0)) return;
     sums.separating = false;
-    sums.asked += place.contact.diagonal * residual.squaredNorm();
+    sums.squared_residual += loaded.contact.diagonal * residual.squaredNorm();
 }
 
 }  // namespace skerry

@@ -9,20 +9,20 @@
 namespace skerry {
 
 /// References to the data of one joint block in the memory of a region.
-struct JointPlaceInRegion {
+struct LoadedJoint {
     LumpedContact& contact;
     RigidPart& part;
     JointLaw& law;
 };
 
-/// Fills `place` from `block`. `rigid` lists the rigid bodies of the region. Each body has two velocity rows, in the
+/// Fills `loaded` from `block`. `rigid` lists the rigid bodies of the region. Each body has two velocity rows, in the
 /// order of the list.
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
-                const JointPlaceInRegion& place);
+                const LoadedJoint& loaded);
 
 /// Sets the mobility of a mimic equation, which couples the axis velocities of two joints, from its two loaded blocks.
 /// The equation is solved with `first`; the block `leader` gets mobility 0, so sweeps skip it.
-void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader);
+void load_mimic(const LoadedJoint& first, const LoadedJoint& leader);
 
 /// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The error of the
 /// joint block at the end of the step is predicted from the velocities of the region. The part of the error that is
@@ -30,10 +30,10 @@ void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leade
 /// added to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows
 /// of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
-                   const JointPlaceInRegion& place);
+                   const LoadedJoint& loaded);
 
 /// Adds a joint block to the sums for the error scale of a region. `u` is the relative velocity at the joint without
 /// impulses, in world axes [m/s or rad/s].
-void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums);
+void add_joint(const LoadedJoint& loaded, const Vec4& u, LoadSums& sums);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
 // Life cycle of a region: load, start, sweep, write back, push out. It is the same for all regions. Regions differ in
-// their operator (lumped masses, clusters, bodies) and in their walk, the traversal of contacts (in order, coloured).
+// their operator (lumped masses, clusters, bodies) and in the traversal of their contacts (in order, coloured).
 #pragma once
 
 #include <algorithm>
@@ -13,19 +13,19 @@
 
 namespace skerry {
 
-/// One region and its rows of the working memory, in the order in which the walk visits the contacts. BodyRegion
+/// One region and its rows of the working memory, in the order in which the traversal visits the contacts. BodyRegion
 /// replaces the functions from moves_node() on.
-template <RegionOrder Walk, class Memory>
+template <RegionOrder Traversal, class Memory>
 struct LoadedRegion {
     std::span<const Index> row;  // rows of ContactTable, by number of the contact in the region
     Index base = 0;              // row of the first contact of the region in the columns by contact
-    Walk walk{};
+    Traversal traversal{};
     Memory memory{};
     LoadSums sums{};
     Real scale = 0;      // the relative solver error is the residual norm divided by this scale [sqrt(J)]
     Real tolerance = 0;  // tolerance of the relative error for this region
 
-    Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
+    Index row_at(std::size_t position) const { return row[traversal.number_of(position)]; }
     /// True if write_nodes() writes the velocity of the node in velocity row n. BodyRegion returns false for nodes that
     /// move with the frame of a body.
     bool moves_node(const RegionStage&, std::size_t) const { return true; }
@@ -45,29 +45,29 @@ struct LoadedRegion {
     /// cylinders.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
     /// Work of the split impulse against the forces of the step [J]
-    Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Walk::own_masses); }
+    Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Traversal::own_masses); }
 };
 
-/// List of the nodes of a region and their velocities, in the order of their first appearance. RegionMemory::place
+/// List of the nodes of a region and their velocities, in the order of their first appearance. RegionMemory::node_index
 /// stores the index of each node in the list. Regions of a step share no moving node, so their entries do not conflict.
 /// An entry left from an earlier step is recognised: at this index the list holds another node or none.
 class NodeList {
 public:
     /// The list may use at most `room` entries of the columns by node, from `first` on.
     NodeList(RegionMemory& data, std::size_t first, std::size_t room)
-        : place_(data.place.span()),
+        : index_of_node_(data.node_index.span()),
           node_(data.node.span().subspan(first, room)),
           velocity_(data.velocity.span().subspan(first, room)) {}
 
     /// Returns the index of a node in the list. A new node is added to the list with the velocity that `velocity()`
     /// returns.
     template <class Velocity>
-    Index place_of(Index node, Velocity&& velocity) {
-        Index& place = place_[node];
-        if (static_cast<std::size_t>(place) < count_ && node_[place] == node) return place;
-        place = static_cast<Index>(count_);
+    Index index_of(Index node, Velocity&& velocity) {
+        Index& index = index_of_node_[node];
+        if (static_cast<std::size_t>(index) < count_ && node_[index] == node) return index;
+        index = static_cast<Index>(count_);
         add(node, velocity());
-        return place;
+        return index;
     }
     void add(Index node, const Vec4& velocity) {
         node_[count_] = node;
@@ -82,23 +82,23 @@ public:
     }
 
 private:
-    std::span<Index> place_, node_;
+    std::span<Index> index_of_node_, node_;
     std::span<Vec4> velocity_;
     std::size_t count_ = 0;
 };
 
-/// Load: writes the contacts in the order of the walk, and zero impulses. `load(place, number, contact)` fills a
-/// contact and returns the contact velocity without impulses; it may add nodes to the NodeList. `place`: index in the
-/// order of the walk. `number`: index in region.row. Adds the sums over contacts to the sums over joints.
+/// Load: writes the contacts in the order of the traversal, and zero impulses. `load(position, number, contact)` fills
+/// a contact and returns the contact velocity without impulses; it may add nodes to the NodeList. `position`: index in
+/// the order of the traversal. `number`: index in region.row. Adds the sums over contacts to the sums over joints.
 template <class Region, class Load>
 void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     RegionMemory& data = stage.memory;
     const std::size_t first = static_cast<std::size_t>(region.base);
-    region.sums = region.walk.template sum<LoadSums>(region.row.size(), [&](std::size_t begin, std::size_t end) {
+    region.sums = region.traversal.template sum<LoadSums>(region.row.size(), [&](std::size_t begin, std::size_t end) {
         LoadSums sums = region.sums;
         for (std::size_t i = begin; i < end; ++i) {
             LumpedContact& contact = data.contact[first + i];
-            const Vec4 u = load(i, region.walk.number_of(i), contact);
+            const Vec4 u = load(i, region.traversal.number_of(i), contact);
             sums.add(contact, stage.settings.friction, u);
             data.impulse[first + i].setZero();
         }
@@ -111,7 +111,7 @@ void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
 /// frictionless contact only the normal part of the impulse is used.
 template <class Region, RegionOperator Op>
 void take_warm_start(const RegionStage& stage, const Region& region, Op& op) {
-    region.walk.contacts(region.row.size(), [&](std::size_t begin, std::size_t end) {
+    region.traversal.contacts(region.row.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const LumpedContact& contact = region.memory.contact[i];
             if (contact.inverse_diagonal == 0) continue;
@@ -169,7 +169,7 @@ template <class Region>
 [[gnu::always_inline]] inline void write_nodes(const RegionStage& stage, const Region& region,
                                                std::span<const Vec4> velocity, std::span<Vec3> out) {
     const std::span<const Index> node = region.memory.node;
-    region.walk.nodes(node.size(), [&](std::size_t begin, std::size_t end) {
+    region.traversal.nodes(node.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
             if (region.moves_node(stage, n)) out[node[n]] = velocity[n].template head<3>();
     });
@@ -181,7 +181,7 @@ template <class Region>
 template <class Region>
 [[gnu::always_inline]] inline Real write_back(const RegionStage& stage, const Region& region) {
     write_nodes(stage, region, region.memory.velocity, stage.out.velocity_next);
-    const Real all = region.walk.template sum<Real>(region.row.size(), [&](std::size_t begin, std::size_t end) {
+    const Real all = region.traversal.template sum<Real>(region.row.size(), [&](std::size_t begin, std::size_t end) {
         Real dissipated = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const Index row = region.row_at(i);

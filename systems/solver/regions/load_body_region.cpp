@@ -22,8 +22,8 @@ public:
                 room_of_region(stage.inputs, data_, rows.contact.size() + points_, number)),
           region_{{.row = rows.contact,
                    .base = base,
-                   .walk = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
-                                         stage.inputs.implicit, stage.inputs.rigid, list_.node()),
+                   .traversal = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
+                                              stage.inputs.implicit, stage.inputs.rigid, list_.node()),
                    .memory = memory_of(rows, base),
                    // Joints and cables are not checked for stillness, so regions with them never use the tolerance of
                    // still regions.
@@ -34,7 +34,7 @@ public:
                   data_.region_rigid[number_]} {}
 
     BodyRegion load() {
-        list_blocks();
+        add_velocity_rows();
         for (std::size_t k = 0; k < region_.joint.size(); ++k) load_joint_at(k);
         load_cables();
         load_contacts(stage_, region_, [this](std::size_t i, std::size_t, LumpedContact& contact) {
@@ -70,7 +70,7 @@ private:
     }
 
     /// Adds velocity rows of the rigid bodies, the touched nodes of implicit bodies, and the nodes of clusters.
-    void list_blocks() {
+    void add_velocity_rows() {
         const RigidInputs& rigid = stage_.inputs.rigid;
         for (const Index body : region_.rigid) {
             const auto r = static_cast<std::size_t>(body);
@@ -80,14 +80,14 @@ private:
         if (stage_.inputs.implicit.any())
             for (const Index body : region_.rigid)
                 for (const Index n : stage_.inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)])
-                    place_of(n);
+                    velocity_row_of(n);
         for (const Index c : data_.region_clusters[number_])
-            for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
+            for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) velocity_row_of(n);
     }
 
     /// Returns the velocity row of a node in the region.
-    Index place_of(Index node) {
-        return list_.place_of(node, [&]() -> Vec4 {
+    Index velocity_row_of(Index node) {
+        return list_.index_of(node, [&]() -> Vec4 {
             const RigidNodes& rigid = stage_.inputs.rigid.nodes;
             const Index row = stage_.inputs.implicit.row(node, rigid);
             if (row == no_index) return free_velocity_of(stage_, node);
@@ -100,7 +100,7 @@ private:
         part.term_count = 0;
         contact = load_contact(
             stage_.inputs, region_.row[i], stage_.out.velocity_next, stage_.settings, stage_.h,
-            [&](Index node) { return place_of(node); },
+            [&](Index node) { return velocity_row_of(node); },
             [&](Index node, Real weight) {
                 const Index body = rigid.row(node);
                 const auto row = static_cast<std::size_t>(region_.row[i]);
@@ -132,7 +132,7 @@ private:
                            data_.contact[static_cast<std::size_t>(region_.base) + i], region_.memory.part[i]);
                 region_.memory.impulse[i++].setZero();
             }
-            load_cable(stage_, cable, region_.memory, region_.walk, first, region_.sums);
+            load_cable(stage_, cable, region_.memory, region_.traversal, first, region_.sums);
         }
     }
 
@@ -160,27 +160,27 @@ private:
                          acts_at != nullptr ? *acts_at : stage_.inputs.rigid.position[static_cast<std::size_t>(node)],
                          weight, [] { return Vec3(Vec3::Zero()); });
             if (body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index) continue;
-            const auto place = static_cast<std::size_t>(contact.node_count++);
-            contact.weight[place] = weight;
-            contact.step[place] = weight * inverse_mass;
-            contact.node[place] = place_of(node);
+            const auto index = static_cast<std::size_t>(contact.node_count++);
+            contact.weight[index] = weight;
+            contact.step[index] = weight * inverse_mass;
+            contact.node[index] = velocity_row_of(node);
         }
         contact.offset = padded(offset);
         find_mobility(contact, part, FrictionAxis{});
     }
 
     void load_joint_at(std::size_t k) {
-        const JointPlaceInRegion place = region_.joint_place(stage_, k);
+        const LoadedJoint loaded = region_.loaded_joint(stage_, k);
         const JointBlock& block = stage_.inputs.joints[static_cast<std::size_t>(region_.joint[k])];
-        load_joint(stage_, block, region_.rigid, place);
+        load_joint(stage_, block, region_.rigid, loaded);
         region_.memory.impulse[region_.row.size() + k].setZero();
         if (block.mimic.coefficient != 0) {
             region_.sums.separating = false;
-            if (block.mimic.leads) load_mimic(region_.joint_place(stage_, k - 1), place);
+            if (block.mimic.leads) load_mimic(region_.loaded_joint(stage_, k - 1), loaded);
             return;
         }
-        const Vec4 u = add_rigid_velocities(place.part, region_.memory.velocity.data(), place.contact.offset);
-        add_joint(place, u, region_.sums);
+        const Vec4 u = add_rigid_velocities(loaded.part, region_.memory.velocity.data(), loaded.contact.offset);
+        add_joint(loaded, u, region_.sums);
     }
 
     const Vec3& contact_normal(std::size_t i) const {
@@ -197,8 +197,12 @@ private:
         RigidTerm& term = part.term[static_cast<std::size_t>(k)];
         if (k == part.term_count) {
             ++part.term_count;
-            const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(Vec3(beside())), .spin_step = {}};
+            const auto rigid_index =
+                std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
+            term = {.row = body,
+                    .slot = static_cast<Index>(2 * rigid_index),
+                    .arm = padded(Vec3(beside())),
+                    .spin_step = {}};
         }
         term.weight += weight;
         term.arm += weight * padded(acts_at - rigid.center[static_cast<std::size_t>(body)]);
@@ -206,7 +210,7 @@ private:
 
     void find_mobility(LumpedContact& contact, RigidPart& part, const FrictionAxis& axis) const {
         const bool moves_nodes = contact.node_count > 0;
-        Mat3 mobility = moves_nodes ? region_.walk.coupling(contact, contact) : Mat3(Mat3::Zero());
+        Mat3 mobility = moves_nodes ? region_.traversal.coupling(contact, contact) : Mat3(Mat3::Zero());
         for (Index k = 0; k < part.term_count; ++k) {
             RigidTerm& term = part.term[static_cast<std::size_t>(k)];
             const auto r = static_cast<std::size_t>(term.row);
@@ -224,7 +228,7 @@ private:
         part.mobility = columns_of(mobility);
         part.along_normal = normal.dot(mobility * normal);
         if (moves_nodes && part.term_count > 0 && stage_.inputs.implicit.any())
-            part.along_normal = normal.dot((region_.walk.undeformed_coupling(contact, contact) + rigid) * normal);
+            part.along_normal = normal.dot((region_.traversal.undeformed_coupling(contact, contact) + rigid) * normal);
         part.steepest = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
         if (part.term_count > 0 || part.across != 1) {
             Mat3 frame = matrix_of(part.frame);

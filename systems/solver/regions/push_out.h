@@ -27,7 +27,7 @@ concept RegionOperator = ContactOperator<Op> &&
 /// joints and the rotation of capsules and cylinders.
 struct PushedContacts {
     /// True if rotation of bodies may reduce gaps.
-    bool any_turns() const { return false; }
+    bool any_rotation() const { return false; }
     /// Rate of change of a contact's gap by rotation, if rotation shrinks the gap; otherwise 0. So it is never positive
     /// [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
@@ -52,70 +52,71 @@ public:
     /// the slop.
     bool run(bool pressed) {
         clear();
-        const Asked asked = ask();
-        if (!pressed && !asked.by_turns) return false;
-        sweep(asked.size);
+        const Requested requested = request();
+        if (!pressed && !requested.by_rotation) return false;
+        sweep(requested.size);
         // The push rotates bodies, and rotation changes the gaps of contacts. This number of times, the loss of gap is
         // computed again with the new rotation, and more sweeps compensate for it.
-        constexpr int turn_rounds = 2;
-        for (int round = 0; round < turn_rounds && others_.any_turns(); ++round) sweep(ask().size);
+        constexpr int rotation_rounds = 2;
+        for (int round = 0; round < rotation_rounds && others_.any_rotation(); ++round) sweep(request().size);
         return true;
     }
 
 private:
-    struct Asked {
+    struct Requested {
         Real size;  // sum of the squared energy norms of all requested pushes [J]
-        bool by_turns;
+        bool by_rotation;
     };
 
     void clear() {
-        region_.walk.nodes(velocity_.size(), [this](std::size_t begin, std::size_t end) {
+        region_.traversal.nodes(velocity_.size(), [this](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) velocity_[n].setZero();
         });
-        region_.walk.contacts(region_.row.size(), [this](std::size_t begin, std::size_t end) {
+        region_.traversal.contacts(region_.row.size(), [this](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) memory_.impulse[i] = 0;
         });
     }
 
-    Asked ask() {
+    Requested request() {
         // Only regions of one thread have capsules or cylinders, so no two threads write this flag.
-        bool by_turns = false;
-        const Real size = region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
-            Real part = 0;
-            for (std::size_t i = begin; i < end; ++i) {
-                const LumpedContact& contact = region_.memory.contact[i];
-                const Real along = contact.normal.dot(op_.velocity(static_cast<Index>(i))) - contact.bias;
-                const Real gap = stage_.inputs.gap[region_.row_at(i)];
-                Real& bias = memory_.bias[i];
-                bias = push_bias(along, gap, slop_, stage_.settings, stage_.inputs.gravity, stage_.h);
-                if (const Real loss = others_.loss(i, velocity_); loss < 0) {
-                    bias = push_bias_turned(bias, along, gap, slop_, loss, stage_.h);
-                    by_turns = by_turns || bias < 0;
+        bool by_rotation = false;
+        const Real size =
+            region_.traversal.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
+                Real part = 0;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const LumpedContact& contact = region_.memory.contact[i];
+                    const Real along = contact.normal.dot(op_.velocity(static_cast<Index>(i))) - contact.bias;
+                    const Real gap = stage_.inputs.gap[region_.row_at(i)];
+                    Real& bias = memory_.bias[i];
+                    bias = push_bias(along, gap, slop_, stage_.settings, stage_.inputs.gravity, stage_.h);
+                    if (const Real loss = others_.loss(i, velocity_); loss < 0) {
+                        bias = push_bias_turned(bias, along, gap, slop_, loss, stage_.h);
+                        by_rotation = by_rotation || bias < 0;
+                    }
+                    part += op_.push_size(static_cast<Index>(i), std::min(bias, Real(0)));
                 }
-                part += op_.push_size(static_cast<Index>(i), std::min(bias, Real(0)));
-            }
-            return part;
-        });
-        return {size, by_turns};
+                return part;
+            });
+        return {size, by_rotation};
     }
 
-    void sweep(Real asked) {
-        if (sweep_rows(region_.tolerance * region_.tolerance * asked, false)) return;
+    void sweep(Real requested) {
+        if (sweep_rows(region_.tolerance * region_.tolerance * requested, false)) return;
         // Joints and ties can prevent a contact from being pushed apart. They take precedence, so the last sweeps are
         // over joints and ties only: with an error in their positions the next velocity solve would demand a motion
         // that the contact forbids.
         constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
-        sweep_rows(rounding * asked, true);
+        sweep_rows(rounding * requested, true);
     }
 
     /// Sweeps over the joints and contacts, or over the joints and ties only, until the squared energy norm of the
     /// change of a sweep is at most `small`. Returns true if this happens within max_iterations.
     bool sweep_rows(Real small, bool only_equations) {
         for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
-            const Real of_joints = others_.sweep_joints(velocity_);
+            const Real joint_change = others_.sweep_joints(velocity_);
             const Real change =
-                region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
-                    Real size = begin == 0 ? of_joints : 0;
+                region_.traversal.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
+                    Real size = begin == 0 ? joint_change : 0;
                     for (std::size_t i = begin; i < end; ++i)
                         if (!only_equations || region_.memory.contact[i].friction.ties())
                             size +=
@@ -146,7 +147,7 @@ template <class Region, RegionOperator Op>
     const Real slop = push_slop(stage.inputs.gravity, stage.h);
     const bool pressed = std::ranges::any_of(region.row, [&](Index i) { return stage.inputs.gap[i] < -slop; });
     auto others = region.pushed(stage, op);
-    if (!pressed && !others.any_turns()) return false;
+    if (!pressed && !others.any_rotation()) return false;
     return Push(stage, region, op, std::move(others)).run(pressed);
 }
 

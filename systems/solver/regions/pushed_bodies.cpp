@@ -10,36 +10,38 @@
 namespace skerry {
 namespace {
 
-/// Height along the normal, above the centre of a cylinder, of its point `place` after its axis has rotated from `axis`
-/// to `axis_then`, without rotation about the axis. If `place` is the lowest point of a rim, the result is the height
+/// Height along the normal, above the centre of a cylinder, of its point `point` after its axis has rotated from `axis`
+/// to `axis_then`, without rotation about the axis. If `point` is the lowest point of a rim, the result is the height
 /// of the rim's lowest point after the rotation, because the lowest point moves around the rim [m]
-Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
+Real height_after(const Vec3& point, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
     // A point counts as the lowest of its rim if it is higher than the lowest one by at most `lowest` times the radius.
     // Below the angle `least_tilt` between axis and normal [rad], many points of a rim would count as lowest, so
-    // `place` itself is rotated.
+    // `point` itself is rotated.
     constexpr Real lowest = 1e-9, least_tilt = 1e-4;
-    const Real up = axis.dot(place), radius = (place - up * axis).norm();
-    const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };
-    if (axis.cross(normal).norm() > least_tilt && normal.dot(place) <= lowest_of_rim(axis) + lowest * radius)
+    const Real height = axis.dot(point), radius = (point - height * axis).norm();
+    const auto lowest_of_rim = [&](const Vec3& direction) {
+        return height * direction.dot(normal) - radius * direction.cross(normal).norm();
+    };
+    if (axis.cross(normal).norm() > least_tilt && normal.dot(point) <= lowest_of_rim(axis) + lowest * radius)
         return lowest_of_rim(axis_then);
     const Vec3 about = axis.cross(axis_then);
     const Real sine = about.norm();
-    if (!(sine > 0)) return normal.dot(place);
-    return normal.dot(rotation_matrix(std::atan2(sine, axis.dot(axis_then)) / sine * about) * place);
+    if (!(sine > 0)) return normal.dot(point);
+    return normal.dot(rotation_matrix(std::atan2(sine, axis.dot(axis_then)) / sine * about) * point);
 }
 
 }  // namespace
 
 PushedBodies::PushedBodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> rigid,
                            const BodyMemory& memory, const BodyOperator& op)
-    : stage_(stage), row_(row), memory_(memory), op_(op), any_turns_(std::ranges::any_of(rigid, [&](Index r) {
+    : stage_(stage), row_(row), memory_(memory), op_(op), any_rotation_(std::ranges::any_of(rigid, [&](Index r) {
           return stage.inputs.rigid.is_capsule(r) || stage.inputs.rigid.is_cylinder(r);
       })) {
     for (std::size_t at = row.size(); at < memory.contact.size(); ++at) memory.workspace[0][at].setZero();
 }
 
 Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
-    if (!any_turns_ || op_.limits(static_cast<Index>(i)).ties()) return 0;
+    if (!any_rotation_ || op_.limits(static_cast<Index>(i)).ties()) return 0;
     constexpr Real rounding = 1e-12;  // rounding error of positions, as in push_slop [m]
     const RigidInputs& rigid = stage_.inputs.rigid;
     const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row_[i])];
@@ -49,7 +51,7 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
         const bool cylinder = rigid.is_cylinder(term.row);
         if (!cylinder && !rigid.is_capsule(term.row)) continue;
         // Contact point relative to the centre. For a capsule the point is on the axis.
-        const Vec3 place =
+        const Vec3 point =
             cylinder ? Vec3(term.arm.head<3>()) : Vec3(term.arm.head<3>() + rigid.radius(term.row) * normal);
         const Vec3 angular_momentum =
             rigid.spins.angular_momentum[r] + (rigid.spins.moment_kick[r] + stage_.out.contact_moment[r]);
@@ -57,14 +59,14 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
                    push_spin = push[static_cast<std::size_t>(term.slot) + 1].head<3>();
         const Mat3 turned = turned_freely(rigid.rotation[r], rigid.moments[r], angular_momentum, stage_.h);
         const Mat3 pushed = rotation_matrix(stage_.h * push_spin);
-        const Vec3 straight = stage_.h * (spin + push_spin).cross(place);
+        const Vec3 straight = stage_.h * (spin + push_spin).cross(point);
         if (cylinder) {
-            along += height_after(place, rigid.rotation[r].col(2), pushed * turned.col(2), normal) -
-                     normal.dot(place + straight);
+            along += height_after(point, rigid.rotation[r].col(2), pushed * turned.col(2), normal) -
+                     normal.dot(point + straight);
             continue;
         }
-        const Vec3 there = pushed * (turned * (rigid.rotation[r].transpose() * place));
-        along += normal.dot(there - place - straight);
+        const Vec3 rotated = pushed * (turned * (rigid.rotation[r].transpose() * point));
+        along += normal.dot(rotated - point - straight);
     }
     return along < -rounding ? along / stage_.h : 0;
 }
@@ -89,7 +91,7 @@ Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
         const Mat3 frame = matrix_of(part.frame);
         const Vec3 r = frame.transpose() * impulse[at].head<3>();
         const Vec3 u = frame.transpose() * op_.velocity_at(i, push.data()).head<3>();
-        const Vec4 next = padded(frame * law.answer(bounds(at, law), u - law.block * r));
+        const Vec4 next = padded(frame * law.solve(bounds(at, law), u - law.block * r));
         const Vec4 change = next - impulse[at];
         if (change.isZero(0)) continue;
         op_.apply_undeformed(i, change, push.data());

@@ -26,7 +26,7 @@ public:
                  const BodyMemory& memory, const BodyOperator& op);
 
     /// True if the region has a capsule or a cylinder.
-    bool any_turns() const { return any_turns_; }
+    bool any_rotation() const { return any_rotation_; }
     /// Rate of change of the gap of contact i because the contact point moves on an arc instead of a straight line. The
     /// body moves with its velocities and the pseudo velocities `push`. Negative if the gap shrinks by more than the
     /// rounding error, otherwise 0 [m/s].
@@ -41,7 +41,7 @@ private:
     std::span<const Index> row_;
     const BodyMemory& memory_;
     const BodyOperator& op_;
-    bool any_turns_;
+    bool any_rotation_;
 };
 
 }  // namespace skerry

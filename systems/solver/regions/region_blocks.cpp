@@ -7,7 +7,7 @@ namespace {
 
 /// Lists a cluster or rigid body (`block`) at most once per region. `region_of` stores the last region that listed the
 /// block.
-void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& list) {
+void add_region(Index block, Index region, Column<Index>& region_of, Ragged<Index>& list) {
     if (block == no_index || region_of[static_cast<std::size_t>(block)] == region) return;
     region_of[static_cast<std::size_t>(block)] = region;
     list.item.push_back(block);
@@ -18,10 +18,11 @@ void note_stencil(const RegionInputs& inputs, const Stencil& stencil, Index numb
     for (std::size_t a = 0; a < 4; ++a) {
         if (stencil.weight[a] == 0) continue;
         if (inputs.clustered())
-            note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster, memory.region_clusters);
+            add_region(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
+                       memory.region_clusters);
         // Held nodes (inverse mass 0) are left out, because no impulse moves them.
         if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
-            note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
+            add_region(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
     }
 }
 
@@ -73,8 +74,10 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
                 note_stencil(inputs, of_point, number, memory);
         for (const Index joint : regions.joints_of(r)) {
             const JointBlock& block = inputs.joints[static_cast<std::size_t>(joint)];
-            if (block.first_node != no_index) note(block.first, number, memory.region_of_rigid, memory.region_rigid);
-            if (block.second_node != no_index) note(block.second, number, memory.region_of_rigid, memory.region_rigid);
+            if (block.first_node != no_index)
+                add_region(block.first, number, memory.region_of_rigid, memory.region_rigid);
+            if (block.second_node != no_index)
+                add_region(block.second, number, memory.region_of_rigid, memory.region_rigid);
         }
         const std::size_t contacts = regions.contacts[r].size(), joints = regions.joints_of(r).size(),
                           points = points_of_cables(inputs, regions.cables_of(r));

@@ -104,7 +104,7 @@ struct RegionMemory {
     Column<Vec4> free_velocity;  // by row of `velocity`; empty if no step has needed BodyOperator [m/s]
     // For each row of NodeTable: index that the node received last in the list of its region (NodeList). It is outdated
     // if the list now holds another node at this index.
-    Column<Index> place;
+    Column<Index> node_index;
     // by region
     Column<Real> cost;        // predicted time of the solve [microseconds]
     Column<Real> cost_parts;  // partial sums of `cost` over the regions

@@ -14,7 +14,7 @@ void RegionMemory::make_room_for(std::size_t contacts, std::size_t region_nodes,
     make_room(node, region_nodes);
     make_room(velocity, region_nodes);
     make_room(scratch, region_nodes);
-    make_room(place, nodes);
+    make_room(node_index, nodes);
     for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(workspace[slot], contacts);
 }
 
@@ -111,7 +111,8 @@ Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, b
                     stage.inputs.inverse_mass[node];
         else
             work -= stage.inputs
-                        .cluster_kick[stage.inputs.clusters->nodes.offset[cluster] + stage.inputs.clusters->place[node]]
+                        .cluster_kick[stage.inputs.clusters->nodes.offset[cluster] +
+                                      stage.inputs.clusters->index_in_cluster[node]]
                         .dot(moved);
     }
     return work;

@@ -15,7 +15,7 @@ RegionOutcome solve_clustered(const RegionStage& stage, std::span<const Index> r
     // So all nodes of the touched clusters are listed before the contacts add theirs.
     for (const Index c : stage.memory.region_clusters[r])
         for (const Index node : clusters.nodes[static_cast<std::size_t>(c)])
-            list.place_of(node, [&] { return free_velocity_of(stage, node); });
+            list.index_of(node, [&] { return free_velocity_of(stage, node); });
     load_listed(stage, list, region);
     return solve_loaded(stage, region);
 }

@@ -7,8 +7,8 @@ namespace skerry {
 RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,
                               ColouredRegion& kept) {
     RegionByColour region =
-        lumped_region(stage, row, base, 4 * static_cast<std::size_t>(base), kept.node.span(), kept.walk(team));
-    region.walk.nodes(kept.node.size(), [&](std::size_t begin, std::size_t end) {
+        lumped_region(stage, row, base, 4 * static_cast<std::size_t>(base), kept.node.span(), kept.traversal(team));
+    region.traversal.nodes(kept.node.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) region.memory.velocity[n] = free_velocity_of(stage, kept.node[n]);
     });
     load_lumped_contacts(stage, region, [&](std::size_t number) {
@@ -37,7 +37,7 @@ void solve_large_regions(Executor& executor, const RegionStage& stage, RegionTab
         for (std::size_t r = 0; r < regions.size(); ++r) {
             if (!is_large(stage, regions, static_cast<Index>(r))) continue;
             ColouredRegion& kept = *large.region[next++];
-            order_region(stage.inputs, regions.contacts[r], large.team, stage.memory.place.span(), kept);
+            order_region(stage.inputs, regions.contacts[r], large.team, stage.memory.node_index.span(), kept);
             const RegionByColour region =
                 load_by_colour(stage, regions.contacts[r], regions.contacts.offset[r], large.team, kept);
             write_outcome(solve_loaded(stage, region), static_cast<Index>(r), regions);

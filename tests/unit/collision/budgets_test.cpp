@@ -173,7 +173,7 @@ TEST_CASE("features that are held apart are searched within less distance, and a
             contacts += w.contacts.size();
         }
     } held, thorough, deep;
-    std::size_t looked_at = 0;
+    std::size_t test_count = 0;
     thorough.w.settings.use_budgets = false;
     deep.w.settings.continuous = false;
     for (int step = 0; step < 300; ++step) {
@@ -183,13 +183,13 @@ TEST_CASE("features that are held apart are searched within less distance, and a
         for (std::size_t b = 0; b < held.w.pairs.block_nearest.size(); ++b)
             for (const NearCandidate& near : held.w.pairs.near[b]) {
                 REQUIRE(held.w.pairs.block_nearest[b] <= near.distance * (1 + 1e-12));
-                ++looked_at;
+                ++test_count;
             }
         for (const PairState state : held.w.pairs.state) REQUIRE(state == PairState::apart);
         for (Swing* swing : {&held, &thorough, &deep}) swing->w.drift(h);
     }
     CHECK(held.contacts > 100);
-    CHECK(looked_at > held.contacts);
+    CHECK(test_count > held.contacts);
     CHECK(10 * held.candidates < 9 * deep.candidates);
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("blocks cover all candidates in order, with about a fifth as many of t
     const std::size_t blocks = w.pairs.block.size() - 1;
     std::size_t seen = 0, most_of_surfaces = 0, most_of_collider = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
-        const CandidatePlace begin = w.pairs.block[b], end = w.pairs.block[b + 1];
+        const CandidateIndex begin = w.pairs.block[b], end = w.pairs.block[b + 1];
         std::size_t of_surfaces = 0, of_collider = 0;
         for (Index p = begin.pair; p < static_cast<Index>(w.pairs.size()) && p <= end.pair; ++p) {
             const Index from = p == begin.pair ? begin.candidate : 0;
@@ -273,7 +273,7 @@ TEST_CASE("blocks cover all candidates in order, with about a fifth as many of t
     REQUIRE(most_of_surfaces > 1000);
     CHECK(against_plane > most_of_collider);
     CHECK(most_of_collider < most_of_surfaces / 4);
-    const CandidatePlace first = w.pairs.block[0], last = w.pairs.block[blocks];
+    const CandidateIndex first = w.pairs.block[0], last = w.pairs.block[blocks];
     CHECK((first.pair == 0 && first.candidate == 0));
     CHECK((last.pair == static_cast<Index>(w.pairs.size()) && last.candidate == 0));
 }

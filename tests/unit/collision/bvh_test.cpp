@@ -104,9 +104,9 @@ TEST_CASE("a body whose mesh is known has the rows that it would have by itself"
             for (Index body = 0; body < 3; ++body) {
                 of->position.insert(of->position.end(), mesh.nodes.begin(), mesh.nodes.end());
                 if (of == &copied && body > 0) {
-                    RowsBehind behind{count * body, 8 * body};
-                    append_surface_again(first, behind, of->surface);
-                    append_bvh_again(first_tree, behind, of->position, of->bvh, of->leaves);
+                    RowOffsets offset{count * body, 8 * body};
+                    append_surface_copy(first, offset, of->surface);
+                    append_bvh_copy(first_tree, offset, of->position, of->bvh, of->leaves);
                     continue;
                 }
                 first = append_surface(boundary_triangles(mesh.tetrahedra), count * body, 8 * body, of->surface);

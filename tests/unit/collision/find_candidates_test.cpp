@@ -94,10 +94,10 @@ TEST_CASE("candidate rows are the features that their numbers name", "[unit]") {
     const Index a = w.add_solid(test::ball_mesh(1, 2), w.at(Vec3::Zero()), 0.01);
     const Index b = w.add_solid(test::ball_mesh(1, 2), w.at({0.1, 0.2, 2}), 0.01);
     search(w);
-    std::size_t looked_at = 0;
+    std::size_t test_count = 0;
     for (std::size_t p = 0; p < w.pairs.size(); ++p)
         for (const Candidate& c : w.pairs.candidates[p]) {
-            ++looked_at;
+            ++test_count;
             REQUIRE(w.pairs.first[p] == a);
             REQUIRE(w.pairs.second[p] == b);
             const Index first_local = static_cast<Index>(point_of_feature(c.feature) & local_mask),
@@ -111,7 +111,7 @@ TEST_CASE("candidate rows are the features that their numbers name", "[unit]") {
                 CHECK(c.second == w.body.triangles[turned ? a : b].begin + second);
             }
         }
-    CHECK(looked_at > 20);
+    CHECK(test_count > 20);
 }
 
 TEST_CASE("the candidates of a collider are all surface points near it", "[unit]") {
@@ -254,7 +254,7 @@ TEST_CASE("all pairs of new or forgotten bodies are searched, and no others", "[
         std::uint64_t pairs = 0;
         for (std::size_t p = 0; p < w.pairs.size(); ++p) {
             pairs += concerned(p);
-            CHECK((w.pairs.fresh[p] != 0) == concerned(p));
+            CHECK((w.pairs.rebuilt[p] != 0) == concerned(p));
         }
         CHECK(w.search.pair_searches - pairs_before == pairs);
         check_order(w.pairs);

@@ -112,7 +112,7 @@ TEST_CASE("on the last try a crossing is let through, counted, and its pair over
     s.move_spike({0, 0, -100});
     s.w.find(h);
     REQUIRE(s.crossings() > 0);
-    s.w.crossings.last_try = true;
+    s.w.crossings.last_attempt = true;
     CHECK(s.crossings() == 0);
     CHECK(s.w.crossings.let_through > 0);
     REQUIRE(s.w.pairs.size() == 1);

@@ -84,7 +84,7 @@ TEST_CASE("tetrahedra overlap as every edge, face and corner says, and are apart
         if (!overlap.overlapping()) continue;
         ++overlapping;
         const Vec3 direction = random.vector().normalized();
-        const Real way = overlap.way_out(direction);
+        const Real way = overlap.exit_distance(direction);
         CHECK(SimplexOverlap(a.at(0).moved(shift + (way - 1e-6) * direction), b.at(0), 0).overlapping());
         CHECK_FALSE(SimplexOverlap(a.at(0).moved(shift + (way + 1e-6) * direction), b.at(0), 0).overlapping());
     }
@@ -99,8 +99,8 @@ TEST_CASE("a triangle overlaps a tetrahedron that it goes through, and none that
     CHECK_FALSE(SimplexOverlap(tetrahedron, at(-0.1), tolerance).overlapping());
     const SimplexOverlap through(tetrahedron, at(0.25), tolerance);
     REQUIRE(through.overlapping());
-    CHECK(through.way_out(Vec3::UnitZ()) == Approx(0.25));
-    CHECK(through.way_out(-Vec3::UnitZ()) == Approx(0.75));
+    CHECK(through.exit_distance(Vec3::UnitZ()) == Approx(0.25));
+    CHECK(through.exit_distance(-Vec3::UnitZ()) == Approx(0.75));
 }
 
 TEST_CASE("boxes that share a face, an edge or a corner only touch, wherever they are", "[unit]") {

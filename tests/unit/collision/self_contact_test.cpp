@@ -133,9 +133,9 @@ TEST_CASE("the candidates of a strip with itself include all features within rea
         REQUIRE(std::ranges::includes(listed, expected));
         most = std::max(most, expected.size());
         const LeafPairTable& leaves = strip.w.pairs.leaf_pairs[0];
-        compared += strip.w.pairs.fresh[0] != 0 ? leaves.searched.size() : 0;
+        compared += strip.w.pairs.rebuilt[0] != 0 ? leaves.searched.size() : 0;
         listed_leaves += leaves.listed.size();
-        extended += strip.w.pairs.fresh[0] == 0 && strip.w.pairs.valid_until[0] > before;
+        extended += strip.w.pairs.rebuilt[0] == 0 && strip.w.pairs.valid_until[0] > before;
         strip.w.drift(h);
     }
     CHECK(most > 20);
@@ -168,8 +168,8 @@ TEST_CASE("a strip that rolls up and turns finds all contacts with itself while 
         contacts += thorough.w.contacts.size();
         // The travel of the body exceeds the margin of the list, and the motion of its parts does not.
         const PairTable& pairs = thrifty.w.pairs;
-        held += !pairs.fresh[0] && !(pairs.travel_bound[0] < pairs.valid_until[0]);
-        compared += pairs.fresh[0] != 0 ? pairs.leaf_pairs[0].searched.size() : 0;
+        held += !pairs.rebuilt[0] && !(pairs.travel_bound[0] < pairs.valid_until[0]);
+        compared += pairs.rebuilt[0] != 0 ? pairs.leaf_pairs[0].searched.size() : 0;
         listed += pairs.leaf_pairs[0].listed.size();
         thrifty.w.drift(h);
         thorough.w.drift(h);
@@ -219,10 +219,10 @@ TEST_CASE("an end that is thrown through the other end while the strip turns is 
         turn += 0.03;
         strip.steer(5.9, turn, 0);
         strip.w.find(h);
-        if (step > 2 && !pairs.fresh[0] && !(pairs.travel_bound[0] < pairs.valid_until[0])) break;
+        if (step > 2 && !pairs.rebuilt[0] && !(pairs.travel_bound[0] < pairs.valid_until[0])) break;
         strip.w.drift(h);
     }
-    REQUIRE_FALSE(pairs.fresh[0]);
+    REQUIRE_FALSE(pairs.rebuilt[0]);
     REQUIRE_FALSE(pairs.travel_bound[0] < pairs.valid_until[0]);
     CHECK(strip.crossings() == 0);
     CHECK_FALSE(strip.w.crossings.beyond_lists);

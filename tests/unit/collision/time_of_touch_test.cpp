@@ -50,12 +50,12 @@ struct Scene {
 };
 
 /// A scene whose feature passes near `aim`, a point in the frame of the collider [m].
-Scene random_scene(Random& random, Kind kind, Index of_shape, const Vec3& aim, bool turning) {
+Scene random_scene(Random& random, Kind kind, Index part_or_point, const Vec3& aim, bool turning) {
     Scene scene;
     scene.motion = {random.vector(), random.rotation(), 30 * random.vector(), Vec3::Zero()};
     if (turning) scene.motion.angular_velocity = 30 * random.vector();
     scene.feature.kind = kind;
-    scene.feature.of_shape = of_shape;
+    scene.feature.part_or_point = part_or_point;
     const Vec3 middle = 0.8 * random.vector(), flight = 1.5 * (aim - middle);
     for (std::size_t i = 0; i < scene.feature.nodes(); ++i) {
         scene.feature.position[i] = scene.motion.position + scene.motion.rotation * (middle + 0.3 * random.vector());
@@ -114,7 +114,7 @@ struct Seen {
 };
 
 Seen look_at_face(const ColliderGeometry& geometry, const Scene& scene, Real near_edges) {
-    const Index k = scene.feature.of_shape;
+    const Index k = scene.feature.part_or_point;
     const Real radius = collider_point(geometry, k, Vec3::UnitX()).radius;
     const std::vector<Vec3> place = places_of_point(geometry, k);
     std::vector<Side> before(place.size());
@@ -206,7 +206,7 @@ TEST_CASE("spheres that come to touch a collider are found before they do, and n
             Scene scene = random_scene(random, Kind::node, part, inside(random, shape.geometry), trial % 3 == 0);
             const Real radius = 0.2 * std::abs(random.number()),
                        start = local_distance(shape.geometry, scene.at(0)[0], part).distance - radius;
-            scene.feature.kept = {radius, 1e-3};
+            scene.feature.threshold = {radius, 1e-3};
             const std::optional<Touch> touch = first_touch(shape.geometry, scene.motion, h, scene.feature);
             INFO(shape.name << ", trial " << trial << ", radius " << radius);
             if (!(start > 0)) {

@@ -67,7 +67,7 @@ TEST_CASE("a table resizes and erases the columns that have one row each, and no
     PairTable pairs;
     AnyTable(pairs).resize(2);
     CHECK(pairs.key.size() == 2);
-    CHECK(pairs.fresh.size() == 2);
+    CHECK(pairs.rebuilt.size() == 2);
     CHECK(pairs.work.size() == 0);
 }
 

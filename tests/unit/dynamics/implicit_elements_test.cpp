@@ -83,7 +83,8 @@ struct SliverBox {
                 continue;
             }
             const std::span<const Index> nodes = clusters.nodes[static_cast<std::size_t>(cluster)];
-            const std::span<const Real> row = clusters.row(cluster, clusters.place[static_cast<std::size_t>(i)]);
+            const std::span<const Real> row =
+                clusters.row(cluster, clusters.index_in_cluster[static_cast<std::size_t>(i)]);
             for (std::size_t k = 0; k < nodes.size(); ++k) inverse(i, nodes[k]) = row[k];
         }
         return inverse;
@@ -362,16 +363,16 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
         CHECK(std::min(box.explicit_step(), longer * box.plain_step) == longer * box.plain_step);
         // A search that exceeds the moment limit stops early. A limit equal to the result does not change the result.
         REQUIRE(found.moment > 0);
-        goal.most_moment = 0.99 * found.moment;
-        CHECK(search.find(goal).moment > goal.most_moment);
-        goal.most_moment = found.moment;
+        goal.max_moment = 0.99 * found.moment;
+        CHECK(search.find(goal).moment > goal.max_moment);
+        goal.max_moment = found.moment;
         CHECK(search.find(goal).moment == found.moment);
         // The limit on the nodes of a cluster acts likewise.
         test::ElasticBody& of = box.body;
         goal.inverse_mass = of.inverse_mass;
-        goal.most_nodes = cluster_sizes(of.inputs(), of.blocks, of.elements.implicit_modulus, of.inverse_mass).largest;
+        goal.max_nodes = cluster_sizes(of.inputs(), of.blocks, of.elements.implicit_modulus, of.inverse_mass).largest;
         CHECK(!search.find(goal).too_many);
-        --goal.most_nodes;
+        --goal.max_nodes;
         CHECK(search.find(goal).too_many);
     }
 }

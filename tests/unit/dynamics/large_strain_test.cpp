@@ -44,7 +44,7 @@ std::vector<Vec3> bent(const StiffBody& stiff, const ElasticBody& body, Real noi
     std::vector<Vec3> placed(stiff.size());
     for (std::size_t n = 0; n < stiff.size(); ++n) {
         const Vec3& x = body.position[n];
-        placed[static_cast<std::size_t>(stiff.place(n))] =
+        placed[static_cast<std::size_t>(stiff.order_index(n))] =
             Vec3(-1.5 * x.y() * x.y() + 0.05 * x.x(), 0.1 * x.y(), 1.2 * x.x() * x.y()) + by_node[n];
     }
     return placed;
@@ -89,12 +89,12 @@ TEST_CASE("elements of an implicit body of large strain have the forces and ener
     CHECK(stiff.elements().largest_strain(u) > 0.2);
     std::vector<Vec3> force(u.size());
     stiff.elements().forces(u, force);
-    for (std::size_t n = 0; n < u.size(); ++n) body.position[n] += u[static_cast<std::size_t>(stiff.place(n))];
+    for (std::size_t n = 0; n < u.size(); ++n) body.position[n] += u[static_cast<std::size_t>(stiff.order_index(n))];
     body.compute_forces(*executor);
     Real size = 0, difference = 0;
     for (std::size_t n = 0; n < u.size(); ++n) {
         size += body.force[n].squaredNorm();
-        difference += (body.force[n] + force[static_cast<std::size_t>(stiff.place(n))]).squaredNorm();
+        difference += (body.force[n] + force[static_cast<std::size_t>(stiff.order_index(n))]).squaredNorm();
     }
     CHECK(std::sqrt(difference / size) < 1e-12);
     CHECK(stiff.elements().energy(u) ==
@@ -120,7 +120,7 @@ TEST_CASE("the tangent of an implicit body is the slope of its forces", "[dynami
     for (std::size_t n = 0; n < u.size(); ++n) {
         const Vec3& x = body.position[n];
         const Vec3 stretched = x + stretch * Vec3(0.15 * x.x(), 0.1 * x.y(), 0.12 * x.z());
-        u[static_cast<std::size_t>(stiff.place(n))] =
+        u[static_cast<std::size_t>(stiff.order_index(n))] =
             (model == MaterialModel::linear ? stretched : Vec3(turn * stretched)) - x + noise[n];
     }
     constexpr Real inertia = 1.1, stiffness = 1e-4;
@@ -156,7 +156,7 @@ TEST_CASE("a free implicit body of large strain answers without rigid motion, an
     const ElasticBody body = rubber(MaterialModel::stable_neo_hookean);
     StiffBody stiff = stiff_body_of(body);
     const std::vector<Vec3> shape = bent(stiff, body, 0);
-    stiff.stand_in(shape);
+    stiff.set_shape(shape);
     REQUIRE(stiff.prepare_tangent(1, 1e-3, shape));
     REQUIRE(stiff.is_tangent());
     const std::vector<Vec3> impulse = random_vectors(stiff.size(), 1, 5), other = random_vectors(stiff.size(), 1, 6);
@@ -176,7 +176,7 @@ TEST_CASE("a free implicit body of large strain answers without rigid motion, an
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
         Vec3 places = Vec3::Zero(), velocities = Vec3::Zero();
         for (const Index n : body.mesh.tetrahedra[t]) {
-            const auto k = static_cast<std::size_t>(stiff.place(static_cast<std::size_t>(n)));
+            const auto k = static_cast<std::size_t>(stiff.order_index(static_cast<std::size_t>(n)));
             const Vec3 place = body.position[static_cast<std::size_t>(n)] + shape[k];
             places += place;
             velocities += velocity[k];
@@ -200,9 +200,9 @@ TEST_CASE("the solid of an implicit body turns as its tetrahedra do, and its fra
           "[dynamics][implicit]") {
     const ElasticBody body = rubber(MaterialModel::stable_neo_hookean);
     const StiffBody stiff = stiff_body_of(body);
-    const std::vector<Vec3> by_place = bent(stiff, body, 0.01);
+    const std::vector<Vec3> by_order = bent(stiff, body, 0.01);
     BodyShape shape;
-    stiff.find_shape(by_place, shape);
+    stiff.find_shape(by_order, shape);
     // Arms are those of a rotating body: sum arm x (w x y) = I w, with energy w I w / 2.
     const Vec3 spin(0.3, -1, 2);
     std::vector<Vec3> turning(stiff.size());
@@ -220,10 +220,10 @@ TEST_CASE("the solid of an implicit body turns as its tetrahedra do, and its fra
     center /= std::accumulate(body.mass.begin(), body.mass.end(), Real(0));
     for (std::size_t n = 0; n < stiff.size(); ++n) {
         const Vec3 arm = body.position[n] - center;
-        plain[n] = by_place[static_cast<std::size_t>(stiff.place(n))];
+        plain[n] = by_order[static_cast<std::size_t>(stiff.order_index(n))];
         turned[n] = turn * (arm + plain[n]) - arm;
     }
-    const Mat3 of_plain = stiff.turn_to_own_frame(plain), of_turned = stiff.turn_to_own_frame(turned);
+    const Mat3 of_plain = stiff.rotate_to_own_frame(plain), of_turned = stiff.rotate_to_own_frame(turned);
     CHECK((of_turned - turn * of_plain).norm() < 1e-12);
     for (std::size_t n = 0; n < stiff.size(); ++n) CHECK((plain[n] - turned[n]).norm() < 1e-12);
 }
@@ -243,8 +243,8 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     constexpr Real within = 0.01;
     begin_step(stiff, bent(stiff, body, noise), velocity);
     if (!held) {
-        stiff.stand_in(stiff.large_step.carried);
-        stiff.take_momenta(stiff.large_step.velocity);
+        stiff.set_shape(stiff.large_step.carried);
+        stiff.remove_momenta(stiff.large_step.velocity);
         stiff.large_step.angular_momentum = stiff.shape().inertia() * Vec3(2, -4, 6);
     }
     REQUIRE(solve_large_step(1, within, stiff));
@@ -293,7 +293,7 @@ TEST_CASE("a body that is not finite has no step of large strain", "[dynamics][i
     std::vector<Vec3> velocity(stiff.size(), Vec3::Zero());
     velocity[3].x() = std::numeric_limits<Real>::quiet_NaN();
     begin_step(stiff, bent(stiff, body, 0), velocity);
-    stiff.stand_in(stiff.large_step.carried);
+    stiff.set_shape(stiff.large_step.carried);
     CHECK(!solve_large_step(1, 0.01, stiff));
 }
 
@@ -306,13 +306,13 @@ TEST_CASE("bounds find large strain as a test in each step does", "[dynamics][im
     int large = 0;
     for (int k = 0; k < 600; ++k) {
         const Real size = 0.2 * std::pow(std::sin(0.01 * k), 2);
-        std::vector<Vec3> in_places(stiff.size()), by_node(stiff.size());
+        std::vector<Vec3> in_order(stiff.size()), by_node(stiff.size());
         for (std::size_t n = 0; n < stiff.size(); ++n)
-            by_node[n] = in_places[static_cast<std::size_t>(stiff.place(n))] =
-                size * shape[static_cast<std::size_t>(stiff.place(n))];
-        const bool by_bounds = stiff.becomes_large_in_places(in_places, spin);
+            by_node[n] = in_order[static_cast<std::size_t>(stiff.order_index(n))] =
+                size * shape[static_cast<std::size_t>(stiff.order_index(n))];
+        const bool by_bounds = stiff.becomes_large_in_order(in_order, spin);
         CHECK(by_bounds == stiff.becomes_large(by_node, spin));
-        CHECK(by_bounds == stiff.becomes_large_in_places(in_places, spin));
+        CHECK(by_bounds == stiff.becomes_large_in_order(in_order, spin));
         CHECK(!(by_bounds && stiff.becomes_small(by_node, spin)));
         large += by_bounds;
     }

@@ -37,7 +37,8 @@ std::vector<Vec3> random_vectors(std::size_t count, Real size, unsigned seed) {
 /// Reorders values from node order to place order.
 std::vector<Vec3> in_places(const StiffBody& stiff, const std::vector<Vec3>& by_node) {
     std::vector<Vec3> placed(by_node.size());
-    for (std::size_t n = 0; n < by_node.size(); ++n) placed[static_cast<std::size_t>(stiff.place(n))] = by_node[n];
+    for (std::size_t n = 0; n < by_node.size(); ++n)
+        placed[static_cast<std::size_t>(stiff.order_index(n))] = by_node[n];
     return placed;
 }
 
@@ -76,7 +77,8 @@ TEST_CASE("the stiffness of an implicit body is that of the forces of its elemen
     const std::vector<Vec3> pulled = forces_at(1), pushed = forces_at(-1);
     Real size = 0, difference = 0;
     for (std::size_t n = 0; n < u.size(); ++n) {
-        const Vec3 expected = (pushed[n] - pulled[n]) / 2, found = force[static_cast<std::size_t>(stiff.place(n))];
+        const Vec3 expected = (pushed[n] - pulled[n]) / 2,
+                   found = force[static_cast<std::size_t>(stiff.order_index(n))];
         size += expected.squaredNorm();
         difference += (found - expected).squaredNorm();
     }
@@ -132,7 +134,7 @@ TEST_CASE("columns are answers to unit impulses, kept or calculated again", "[dy
     const std::vector<Mat3> column(stiff.column(7).begin(), stiff.column(7).end());
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
         std::vector<Vec3> impulse(stiff.size(), Vec3::Zero());
-        impulse[static_cast<std::size_t>(stiff.place(7))][axis] = 1;
+        impulse[static_cast<std::size_t>(stiff.order_index(7))][axis] = 1;
         stiff.respond(impulse);
         for (std::size_t k = 0; k < stiff.size(); ++k) CHECK((column[k].col(axis) - impulse[k]).norm() < 1e-15);
     }
@@ -141,8 +143,8 @@ TEST_CASE("columns are answers to unit impulses, kept or calculated again", "[dy
     REQUIRE(stiff.prepare(1, 1e-4));
     CHECK(std::ranges::equal(stiff.column(7), column));
     // symmetric: the response at 3 to an impulse at 7 is the transpose of the response at 7 to one at 3
-    const Mat3 there = stiff.column(7)[static_cast<std::size_t>(stiff.place(3))],
-               back = stiff.column(3)[static_cast<std::size_t>(stiff.place(7))];
+    const Mat3 there = stiff.column(7)[static_cast<std::size_t>(stiff.order_index(3))],
+               back = stiff.column(3)[static_cast<std::size_t>(stiff.order_index(7))];
     CHECK((there - back.transpose()).norm() < 1e-12 * there.norm());
 }
 
@@ -158,7 +160,7 @@ TEST_CASE("an implicit body that is held responds as the matrix of its free node
     const Eigen::MatrixXd matrix = dense_matrix(stiff, 1, 1e-4);
     std::vector<Eigen::Index> free;
     for (std::size_t n = 0; n < inverse_mass.size(); ++n)
-        for (Eigen::Index i = 0; i < 3 && inverse_mass[n] > 0; ++i) free.push_back(3 * stiff.place(n) + i);
+        for (Eigen::Index i = 0; i < 3 && inverse_mass[n] > 0; ++i) free.push_back(3 * stiff.order_index(n) + i);
     std::vector<Vec3> impulse = in_places(stiff, random_vectors(stiff.size(), 1, 4));
     const Eigen::VectorXd given = Eigen::Map<const Eigen::VectorXd>(impulse.data()->data(), matrix.rows());
     Eigen::VectorXd expected = Eigen::VectorXd::Zero(matrix.rows());
@@ -190,7 +192,7 @@ TEST_CASE("responses of touched nodes are the columns of those nodes, whatever w
             const std::span<const Mat3> column = stiff.column(static_cast<std::size_t>(nodes[from] - first));
             for (std::size_t to = 0; to < nodes.size(); ++to) {
                 const Mat3& block =
-                    column[static_cast<std::size_t>(stiff.place(static_cast<std::size_t>(nodes[to] - first)))];
+                    column[static_cast<std::size_t>(stiff.order_index(static_cast<std::size_t>(nodes[to] - first)))];
                 for (std::size_t c = 0; c < 3; ++c)
                     for (std::size_t r = 0; r < 3; ++r) {
                         const std::size_t at = (3 * from + c) * numbers + 3 * to + r,

@@ -40,7 +40,7 @@ public:
             }
             max_speed_[0] = std::abs(velocity_[1].x());
             find_still_sets(*executor_, {}, inputs(), settings_, h, memory_, state());
-            const TakenByRest taken = rest_bodies(inputs(), memory_, state());
+            const SleepLosses taken = rest_bodies(inputs(), memory_, state());
             if (taken.bodies > 0) return now;
         }
         return std::nullopt;
@@ -128,7 +128,7 @@ TEST_CASE("a body that begins to slide is not still even if it has hardly moved"
 }
 
 TEST_CASE("an oscillation that returns at evenly spread checks is recognised", "[unit]") {
-    const Real edge = 0.002, period = time_still / 2 / own_sleep_limits::looks;
+    const Real edge = 0.002, period = time_still / 2 / own_sleep_limits::measurements;
     // 8 um peak to peak, where 6 are allowed; speed 0.8 mm/s, where 1.4 are allowed
     CHECK_FALSE(rests(edge, 3, [&](Real t) { return 4e-6 * std::cos(2 * std::numbers::pi * t / period); }));
 }

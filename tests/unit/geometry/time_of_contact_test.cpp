@@ -232,7 +232,7 @@ TEST_CASE("features that keep a distance are not nearer before the time, and the
         for (int trial = 0; trial < draws(1000); ++trial) {
             const FourPoints x = random_points(random, 1), d = random_points(random, 1);
             const Real start = distance_at(kind, x, d, 0);
-            const KeptApart kept{start * 0.9 * std::abs(random.number()), trial % 2 ? 1e-3 * start : 1};
+            const ContactThreshold kept{start * 0.9 * std::abs(random.number()), trial % 2 ? 1e-3 * start : 1};
             const std::optional<Real> time = time_of_contact(kind, x, d, kept);
             for (int look = 0; look <= looks; ++look)
                 REQUIRE(distance_at(kind, x, d, time.value_or(1) * look / looks) > kept.distance);

@@ -13,13 +13,13 @@ namespace {
 Eigen::MatrixXd couple(ContactScene& scene, Index first, Index count, Real stiffness) {
     NodeClusters& clusters = scene.clusters;
     clusters.cluster_of.resize(scene.inverse_mass.size(), no_index);
-    clusters.place.resize(scene.inverse_mass.size(), no_index);
+    clusters.index_in_cluster.resize(scene.inverse_mass.size(), no_index);
     if (clusters.nodes.offset.empty()) clusters.nodes.offset.push_back(0);
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);
     for (Index k = 0; k < count; ++k) {
         const Index n = first + k;
         clusters.cluster_of[n] = static_cast<Index>(clusters.size());
-        clusters.place[n] = k;
+        clusters.index_in_cluster[n] = k;
         clusters.nodes.item.push_back(n);
         A(k, k) += 1 / scene.inverse_mass[static_cast<std::size_t>(n)];
         if (k == 0) continue;

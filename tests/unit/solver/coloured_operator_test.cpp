@@ -39,13 +39,13 @@ struct LoadedScene {
         for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
         data.make_room_for(row.size(), 4 * row.size(), scene.velocity.size(), settings);
         Team alone;
-        order_region(inputs, row, alone, data.place.span(), kept);
+        order_region(inputs, row, alone, data.node_index.span(), kept);
         const RegionByColour loaded = load_by_colour(stage, row, 0, alone, kept);
         memory = loaded.memory;
         scale = loaded.scale;
     }
     LumpedOperator serial(Friction friction) { return {memory, friction, scale}; }
-    ColouredOperator coloured(Team& team, Friction friction) { return {memory, friction, scale, kept.walk(team)}; }
+    ColouredOperator coloured(Team& team, Friction friction) { return {memory, friction, scale, kept.traversal(team)}; }
     bool same_vectors(const LoadedScene& other) const {
         const auto same = [](std::span<const Vec4> a, std::span<const Vec4> b) { return std::ranges::equal(a, b); };
         bool all = same(memory.impulse, other.memory.impulse) && same(memory.velocity, other.memory.velocity);

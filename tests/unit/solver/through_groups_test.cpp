@@ -1,4 +1,4 @@
-// Walk over contacts on bodies that deform in a co-moving frame (docs/methods/implicit_bodies.md 4).
+// Traversal over contacts on bodies that deform in a co-moving frame (docs/methods/implicit_bodies.md 4).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
@@ -24,7 +24,7 @@ struct Groups {
         coupling.nodes.offset.push_back(0);
         for (const Index n : {1, 2, 3}) coupling.nodes.item.push_back(n);
         coupling.nodes.offset.push_back(3);
-        for (const Index place : {no_index, Index{0}, Index{1}, Index{2}}) coupling.place.push_back(place);
+        for (const Index place : {no_index, Index{0}, Index{1}, Index{2}}) coupling.touched_index.push_back(place);
         std::mt19937 engine(1);
         std::uniform_real_distribution<Real> number(-1, 1);
         for (std::size_t k = 0; k < 9; ++k)
@@ -37,7 +37,7 @@ struct Groups {
         implicit.body_implicit = body_implicit;
         implicit.coupling = &coupling;
     }
-    ThroughGroups walk() const { return {clusters, implicit, rigid, node}; }
+    ThroughGroups traversal() const { return {clusters, implicit, rigid, node}; }
 };
 
 /// A contact of rows of `Groups::node`.
@@ -57,7 +57,7 @@ LumpedContact contact_of(std::array<Index, 2> node, std::array<Real, 2> weight) 
 TEST_CASE("impulses that are summed up, by node or by runs, move contacts as the blocks of W do",
           "[solver][implicit]") {
     const Groups groups;
-    const ThroughGroups walk = groups.walk();
+    const ThroughGroups traversal = groups.traversal();
     const std::vector<LumpedContact> contacts{contact_of({2, 5}, {1, -1}), contact_of({3, 2}, {0.3, 0.7}),
                                               contact_of({4, 3}, {-0.4, -0.6}), contact_of({5, 4}, {1, -1})};
     std::vector<Vec4> by_node(6, Vec4::Zero()), by_run = by_node, impulse;
@@ -67,16 +67,18 @@ TEST_CASE("impulses that are summed up, by node or by runs, move contacts as the
     }
     ContactRuns runs;
     const std::span<Vec4> sum = runs.sums(6);
-    for (std::size_t i = 0; i < contacts.size(); ++i) walk.collect(contacts[i], impulse[i], sum.data(), by_node.data());
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        traversal.collect(contacts[i], impulse[i], sum.data(), by_node.data());
     CHECK(sum[5].isZero(0));
-    runs.spread_sums(walk, by_node.data());
+    runs.spread_sums(traversal, by_node.data());
     const std::size_t most = GENERATE(std::size_t(1), std::size_t(2), std::size_t(24));
     runs.start();
-    runs.list(contacts, walk, 6, most);
+    runs.list(contacts, traversal, 6, most);
     CHECK(runs.runs().size() == (most == 24 ? 1 : most == 2 ? 2 : 4));
     const auto expected = [&](std::size_t i, std::size_t last) {
         Vec3 u = Vec3::Zero();
-        for (std::size_t j = 0; j <= last; ++j) u += walk.coupling(contacts[i], contacts[j]) * impulse[j].head<3>();
+        for (std::size_t j = 0; j <= last; ++j)
+            u += traversal.coupling(contacts[i], contacts[j]) * impulse[j].head<3>();
         return u;
     };
     const auto found = [&](std::size_t i, const std::vector<Vec4>& velocity) {
@@ -85,14 +87,14 @@ TEST_CASE("impulses that are summed up, by node or by runs, move contacts as the
     for (const ContactRuns::Run& run : runs.runs()) {
         for (Index i = run.begin; i < run.end; ++i) {
             const auto at = static_cast<std::size_t>(i);
-            runs.apply(at, contacts[at], walk, impulse[at], by_run.data());
+            runs.apply(at, contacts[at], traversal, impulse[at], by_run.data());
             // all contacts of the run at once
             for (Index j = run.begin; j < run.end; ++j) {
                 const auto other = static_cast<std::size_t>(j);
                 CHECK((found(other, by_run) - expected(other, at)).norm() < 1e-13);
             }
         }
-        runs.spread(run, walk, by_run.data());
+        runs.spread(run, traversal, by_run.data());
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         REQUIRE(expected(i, 3).norm() > 0.1);

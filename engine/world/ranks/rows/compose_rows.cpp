@@ -167,7 +167,7 @@ private:
         std::ranges::stable_sort(picks, {}, &Pick::order);
         NodeClusters& clusters = to_.clusters;
         clusters.cluster_of.resize(to_.nodes.position.size(), no_index);
-        clusters.place.resize(to_.nodes.position.size(), no_index);
+        clusters.index_in_cluster.resize(to_.nodes.position.size(), no_index);
         for (const Pick& pick : picks) {
             const RowSource& source = sources_[pick.source];
             const NodeClusters& from = source.model->clusters;
@@ -177,7 +177,7 @@ private:
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 nodes[i] -= down;
                 clusters.cluster_of[nodes[i]] = static_cast<Index>(clusters.size());
-                clusters.place[nodes[i]] = static_cast<Index>(i);
+                clusters.index_in_cluster[nodes[i]] = static_cast<Index>(i);
             }
             append(std::span<const Index>(nodes), clusters.nodes);
             clusters.body.push_back(pick.order);

@@ -11,24 +11,24 @@
 namespace skerry {
 
 /// Rows of a body minus the corresponding rows of an earlier body with the same mesh.
-struct RowsBehind {
+struct RowOffsets {
     Index nodes, elements;  // `nodes`: rows of NodeTable; `elements`: numbers of tetrahedra in TetrahedronBlockTable
     Index triangles = 0, edges = 0, vertices = 0;
 };
 
-/// Adds `by` to a row index; the value no_index is not changed.
-inline void move_on(Index& row, Index by) {
-    if (row != no_index) row += by;
+/// Adds `offset` to a row index; the value no_index is not changed.
+inline void add_offset(Index& row, Index offset) {
+    if (row != no_index) row += offset;
 }
 template <std::size_t count>
-void move_on(std::array<Index, count>& rows, Index by) {
-    for (Index& row : rows) move_on(row, by);
+void add_offset(std::array<Index, count>& rows, Index offset) {
+    for (Index& row : rows) add_offset(row, offset);
 }
 
 /// Appends copies of the rows in the range `rows` to the column. change(row) is applied to each copy before the copy is
 /// stored.
 template <class T>
-void append_again(Column<T>& column, Range rows, auto&& change) {
+void append_copies(Column<T>& column, Range rows, auto&& change) {
     const std::size_t first = column.size(), count = static_cast<std::size_t>(rows.size());
     column.resize(first + count);
     for (std::size_t i = 0; i < count; ++i) {

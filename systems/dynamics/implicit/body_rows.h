@@ -7,12 +7,12 @@
 
 namespace skerry {
 
-struct OfBody {
+struct BodyRows {
     const StiffBody& stiff;
     std::size_t first_node, first_row, count;
 
-    OfBody(const ImplicitBodies& bodies, const StiffBody& of, std::size_t r)
-        : stiff(of),
+    BodyRows(const ImplicitBodies& bodies, const StiffBody& body, std::size_t r)
+        : stiff(body),
           first_node(static_cast<std::size_t>(bodies.nodes(r).begin)),
           first_row(static_cast<std::size_t>(bodies.rows(r).begin)),
           count(static_cast<std::size_t>(bodies.rows(r).size())) {}
@@ -21,7 +21,7 @@ struct OfBody {
     std::span<T> rows(std::span<T> column) const {
         return column.subspan(first_row, count);
     }
-    std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
+    std::size_t order_index(std::size_t n) const { return static_cast<std::size_t>(stiff.order_index(n)); }
 };
 
 /// Coefficient 1 + within d of the masses M in the matrix (1 + within d) M + within^2 K of a step, with the damping
@@ -35,12 +35,12 @@ bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta
 /// order [N s]. M are the node masses. `force`: elastic forces, by the same index [N]; `within`: theta times the step
 /// length [s].
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
-                     std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
+                     std::span<const Vec3> force, const BodyRows& body, std::span<Vec3> impulse);
 
 /// True if strain is large after a step. After a step at large strain the lower bounds of becomes_small() decide.
 /// `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a free body in the frame of the mesh,
 /// zero for a held body [kg m^2/s].
-bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
-                    StiffBody& stiff);
+bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum,
+                    const BodyRows& body, StiffBody& stiff);
 
 }  // namespace skerry
