@@ -236,7 +236,7 @@ WorldReport World::report() const {
                 m > 0;
     if (world.model.force_rate_moves) note_force_rates(state_->model);
     report.stable_step = reported_step(world.model, &stiffest);
-    report.stable_step_body = name_body(world, place_of_stiffest(world, stiffest)).name;
+    report.stable_step_body = name_body(world, world_row_of_stiffest(world, stiffest)).name;
     for (std::size_t b = 0; b < world.model.body_records.size(); ++b)
         if (const BodyRecord& record = world.model.body_records[b]; record.choice.reason != DynamicsReason::given)
             report.dynamics_choices.push_back({world.model.body_map.handle_of_slot(world.model.bodies.slot[b]),

@@ -137,7 +137,7 @@ void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
     const Real trusted = trusted_step(world.model, &body);
-    body = place_of_stiffest(world, body);
+    body = world_row_of_stiffest(world, body);
     if (body == no_index || *world.model.settings.step_size <= trusted) return;
     ++report.limited;
     ++world.record.counters.limited;
@@ -181,7 +181,7 @@ bool is_too_stiff(WorldState& world, const AttemptLimits& attempt, Real end) {
     Index stiffest = no_index;
     const Real trusted = trusted_step(world.model, &stiffest);
     if (std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end) return false;
-    world.scratch.findings.verdict = {StepFault::too_stiff, place_of_stiffest(world, stiffest), no_index, trusted};
+    world.scratch.findings.verdict = {StepFault::too_stiff, world_row_of_stiffest(world, stiffest), no_index, trusted};
     return true;
 }
 
@@ -191,7 +191,7 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     const Real step = step_of_turns(world.model, attempt.slow_enough, row);
     if (!(step < attempt.slow_enough)) return;
     attempt.slow_enough = step;
-    attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
+    attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.world_row_of(row);
 }
 
 /// Fetches bodies from other ranks if the last attempt lacked bodies or new holders must be found. Otherwise does
@@ -199,7 +199,7 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
 /// unknown), because new ghosts have no forces. The assumed stiffness of clusters is restored, so that the next attempt
 /// stiffens the same clusters again and its forces contain the impulses of this stiffening.
 bool fetch_ghosts(WorldState& world) {
-    if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
+    if (!world.ranks.all_findings.bodies_missing && !world.ranks.all_findings.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
     update_ghosts(world);
     world.scratch.parameters.h = 0;
@@ -215,7 +215,7 @@ void require_countable(const WorldState& world, Real dt) {
     const Real stable = stable_step(model, &body) * model.tuning.step_safety;
     const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
-    body = place_of_stiffest(world, body);
+    body = world_row_of_stiffest(world, body);
     const bool of_body = !model.settings.step_size && body != no_index;
     refuse("advance", "dt",
            short_text(dt) + " s in steps of " + short_text(step) + " s" +
@@ -289,7 +289,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     // With ranks, each rank sums the share of its own bodies, and join_records adds all shares.
     Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
-    stops = world.ranks.all.stop = false;
+    stops = world.ranks.all_findings.stop = false;
     world.transaction.begin_call(model, clock);
     ForceLedger& forces = world.record.forces;
     const Real step_before = clock.step_before;
@@ -303,7 +303,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         if (go_on && !stops && !callbacks.run([&] { return go_on(std::as_const(report)); })) stops = true;
         // The stages of each step tell all ranks whether one of them stops (all.stop), so all ranks end the call after
         // the same step.
-        if (world.ranks.on() ? world.ranks.all.stop : stops) {
+        if (world.ranks.on() ? world.ranks.all_findings.stop : stops) {
             report.status = StepStatus::stopped;
             break;
         }
@@ -349,7 +349,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         if (!heard && !world.ranks.on()) break;
     }
     // A rank may have asked to stop in the last step. The loop then ends before its check of all.stop.
-    if (!(left > 0) && world.ranks.all.stop) report.status = StepStatus::stopped;
+    if (!(left > 0) && world.ranks.all_findings.stop) report.status = StepStatus::stopped;
     clock.long_step = {};                // no long step continues in the next call
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
     if (report.steps == 0) {

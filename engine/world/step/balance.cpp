@@ -172,8 +172,8 @@ void check_balance(const WorldState& world, Real time, Real lag, Balance& balanc
     now.damps_held_body = !balance.open && damps_held_body(model);
     now.holds_implicit_element = holds_implicit_element(model);
     if (world.ranks.on()) {
-        const Present mine = std::exchange(now, {});
-        for_each_gathered<Present>(*world.ranks.ranks, std::span(&mine, 1),
+        const Present own_sums = std::exchange(now, {});
+        for_each_gathered<Present>(*world.ranks.ranks, std::span(&own_sums, 1),
                                    [&](const Present& of_rank) { now.add(of_rank); });
     }
     const Real energy = now.kinetic + now.elastic + now.potential;

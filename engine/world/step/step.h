@@ -33,12 +33,12 @@ struct NamedBody {
     BodyHandle body{};  // handle of no body if the object is a mesh collider
     std::string name;
 };
-/// Returns the handle and name of a body, even if only other ranks hold it. `place`: row of the body in the undivided
+/// Returns the handle and name of a body, even if only other ranks hold it. `world_row`: row of the body in the undivided
 /// world; without ranks, its row in BodyTable.
-NamedBody name_body(const WorldState& world, Index place);
+NamedBody name_body(const WorldState& world, Index world_row);
 /// Returns the row in the undivided world of the body with the shortest stable step. `row`: row of this body as
 /// stable_step has set it (its argument `body`).
-Index place_of_stiffest(const WorldState& world, Index row);
+Index world_row_of_stiffest(const WorldState& world, Index row);
 
 // ranks/lead_ghosts.cpp
 
@@ -82,9 +82,9 @@ void agree_to_start(WorldState& world);
 /// Computes Model::of_ranks from the bodies of all ranks. Sets Model::forced if any rank has force elements. Without
 /// ranks it does nothing.
 void reduce_limits(WorldState& world);
-/// Returns the fastest deformation of all ranks, with the row of its body in the undivided world. `mine`: fastest
-/// deformation of this rank, with the row in BodyTable. Without ranks it returns `mine`.
-StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine);
+/// Returns the fastest deformation of all ranks, with the row of its body in the undivided world. `own`: fastest
+/// deformation of this rank, with the row in BodyTable. Without ranks it returns `own`.
+StrainRate fastest_of_ranks(WorldState& world, const StrainRate& own);
 
 // ranks/regions
 

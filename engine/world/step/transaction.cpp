@@ -158,7 +158,7 @@ RunCounters counters_of_step(const WorldState& world) {
     const StepFindings& found = scratch.findings;
     RunCounters counters =
         world.ranks.on() && !scratch.left_out
-            ? world.ranks.all.counters
+            ? world.ranks.all_findings.counters
             : count_step(scratch.contacts, scratch.regions, found.measures, found.strained.newton, found.unstrained);
     counters.inline_steps = scratch.ran_inline;
     counters.resting_steps = scratch.left_out;
@@ -174,7 +174,7 @@ void commit(WorldState& world) {
     if (!scratch.left_out) {
         keep_frames(world);
         flow(world);
-        if (world.ranks.on() ? world.ranks.all.pushed : scratch.regions.pushed) {
+        if (world.ranks.on() ? world.ranks.all_findings.pushed : scratch.regions.pushed) {
             forget_unstrained(scratch.contacts, world.model.bodies);
             for (const Index body : scratch.rank_regions.touched_bodies) world.model.bodies.unstrained[body] = 0;
         }
@@ -202,7 +202,7 @@ void note_step(WorldState& world, const StepPlan& plan, const AttemptLimits& att
     if (!(attempt.at_most() < plan.stable)) {
         const bool here = plan.stiffest != no_index;
         const auto b = static_cast<std::size_t>(plan.stiffest);
-        body = place_of_stiffest(world, plan.stiffest);
+        body = world_row_of_stiffest(world, plan.stiffest);
         const Real stable = here ? step_of_body(model, b) : model.of_ranks.stable_step;
         const bool set = body == no_index || plan.stable < stable * model.tuning.step_safety;
         const bool strained = here ? is_strained(model, b) : model.of_ranks.strained;
@@ -334,9 +334,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
-    if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
+    if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all_findings.label_rounds);
     const StepOutcome outcome =
-        judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists, plan, attempt);
+        judge(scratch, world.ranks.all_findings.again_over_ranks(), world.cache.crossings.beyond_lists, plan, attempt);
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);
