@@ -12,7 +12,8 @@ namespace body_rows_test {
 
 void start(WorldState& world) {
     world.ranks.whole = whole_world_of(world.model);
-    for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) world.ranks.world_row.push_back(static_cast<Index>(b));
+    for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b)
+        world.ranks.world_row.push_back(static_cast<Index>(b));
 }
 
 /// Moves random units of a world to a message, and back from it.
@@ -30,7 +31,8 @@ void split_and_merge(World& of, std::uint64_t seed) {
     const auto leaving = [&](std::uint64_t pair) {
         const PairSlots slots = slots_of_pair(pair);
         return leaves[static_cast<std::size_t>(world.ranks.whole.row_of_slot(slots.first))] != 0 ||
-               (!slots.is_collider && leaves[static_cast<std::size_t>(world.ranks.whole.row_of_slot(slots.second))] != 0);
+               (!slots.is_collider &&
+                leaves[static_cast<std::size_t>(world.ranks.whole.row_of_slot(slots.second))] != 0);
     };
     BodyRows gone = rows_of_bodies(world, leaves, leaving);
     const RankMessage message = message_of(gone);

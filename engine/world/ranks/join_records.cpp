@@ -36,14 +36,14 @@ void join_records(WorldState& world) {
     const Balance own_balance = std::exchange(share.balance, {});
     balance.steps += own_balance.steps;
     const JoinedSums own_sums{std::exchange(share.dissipated, 0),
-                          std::exchange(share.plastic_work, 0),
-                          own_balance.work,
-                          own_balance.energy_flow,
-                          own_balance.momentum_flow,
-                          own_balance.impulse,
-                          crossings.tested - share.tested,
-                          crossings.hits - share.hits,
-                          crossings.let_through - share.let_through};
+                              std::exchange(share.plastic_work, 0),
+                              own_balance.work,
+                              own_balance.energy_flow,
+                              own_balance.momentum_flow,
+                              own_balance.impulse,
+                              crossings.tested - share.tested,
+                              crossings.hits - share.hits,
+                              crossings.let_through - share.let_through};
     crossings.tested = share.tested;
     crossings.hits = share.hits;
     crossings.let_through = share.let_through;

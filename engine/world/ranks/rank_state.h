@@ -41,9 +41,9 @@ struct PredictionMail : RankMail {
 /// Entry of the message about a set of touching bodies that one rank has found. The message has an entry for each body
 /// of the set that several ranks hold.
 struct SetMember {
-    Index world_row;         // row of the body in the undivided world
-    Index set;           // row of the first body of the set on the rank that has found the set
-    Index must_stay_up;  // nonzero if a body of the set must stay awake
+    Index world_row;    // row of the body in the undivided world
+    Index set;          // row of the first body of the set on the rank that has found the set
+    Index stays_awake;  // nonzero if a body of the set must stay awake
 };
 
 /// Working memory of the stages that let bodies fall asleep or wake if several ranks hold them (sleep_over_ranks.cpp).
@@ -129,10 +129,10 @@ struct RankState {
     Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    Column<Index> stale;  // rows (of the undivided world) of own bodies whose copies on other ranks are outdated
+    Column<Index> stale;        // rows (of the undivided world) of own bodies whose copies on other ranks are outdated
     RankFindings own_findings;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all_findings;  // combined findings of all ranks in this attempt at a step
-    bool stops = false;   // true if a callback of this rank has asked to end the present call of World::advance
+    bool stops = false;         // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }

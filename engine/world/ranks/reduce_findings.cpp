@@ -15,7 +15,7 @@ namespace {
 /// Columns that convert rows of this rank's tables to numbers that mean the same on all ranks, and columns that tell
 /// whether a body moves or may be too far from the origin in the next step.
 struct NamedBodies {
-    std::span<const Index> world_row;         // by body: its row in the undivided world
+    std::span<const Index> world_row;     // by body: its row in the undivided world
     std::span<const std::int32_t> owner;  // RankState
     std::span<const Range> nodes;         // BodyTable
     std::span<const Range> tetrahedron_blocks;
@@ -95,8 +95,8 @@ void note_inversions(const NamedBodies& bodies, const StageFindings& found, Rank
     }
 }
 
-/// Copies the findings of the stages to `own_findings`, with numbers of bodies, nodes and tetrahedra that are valid on all
-/// ranks.
+/// Copies the findings of the stages to `own_findings`, with numbers of bodies, nodes and tetrahedra that are valid on
+/// all ranks.
 void note_findings(const NamedBodies& bodies, const StageFindings& found, Real h, RankFindings& own_findings) {
     const StepVerdict& verdict = found.verdict;
     own_findings.fault = verdict.fault;
@@ -134,9 +134,9 @@ void take_findings(const RankFindings& all_findings, const StageFindings& found)
     // The findings must equal those of a process that simulates the whole world. That process tests for inversions and
     // crossings only if no body has a fault, and for crossings only if no candidate list is too short.
     const bool tested = all_findings.fault == StepFault::none;
-    found.inversions =
-        tested ? Inversions{all_findings.inversions, or_none(all_findings.inverted_body), all_findings.inverted_tetrahedron, all_findings.inverts_first}
-               : Inversions{};
+    found.inversions = tested ? Inversions{all_findings.inversions, or_none(all_findings.inverted_body),
+                                           all_findings.inverted_tetrahedron, all_findings.inverts_first}
+                              : Inversions{};
     found.table.beyond_lists = tested && all_findings.beyond_lists;
     found.crossings = tested ? all_findings.crossings : 0;
     if (!tested || all_findings.beyond_lists || all_findings.again_over_ranks()) found.table.found_count = 0;
@@ -146,7 +146,8 @@ void take_findings(const RankFindings& all_findings, const StageFindings& found)
 }
 
 void reduce_findings(const NamedBodies& bodies, const ContactTable& contacts, const RegionTable& regions, const Real& h,
-                     const StageFindings& found, RankFindings& own_findings, RankFindings& all_findings, RankChannel& channel) {
+                     const StageFindings& found, RankFindings& own_findings, RankFindings& all_findings,
+                     RankChannel& channel) {
     note_findings(bodies, found, h, own_findings);
     own_findings.pushed = regions.pushed;
     own_findings.counters = count_step(contacts, regions, found.measures, found.strained.newton, found.unstrained);
@@ -162,34 +163,36 @@ void list_reduction(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     g.stage("ranks/reduce_findings", reduce_findings, inputs<NamedBodies>(w.ranks, w.model.bodies, w.model.nodes),
             read(w.scratch.contacts), read(w.scratch.regions), value(w.scratch.parameters.h),
-            outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings), make(w.ranks.own_findings),
-            make(w.ranks.all_findings), make(w.ranks.channel));
+            outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings),
+            make(w.ranks.own_findings), make(w.ranks.all_findings), make(w.ranks.channel));
 }
 
 void agree_to_start(WorldState& w) {
     RankState& ranks = w.ranks;
     if (!ranks.on()) return;
     const bool possible = !ranks.all_findings.moves || ranks.all_findings.far;
-    bool& left_out = w.scratch.left_out;
+    bool& skipped = w.scratch.skipped;
     StepVerdict& verdict = w.scratch.findings.verdict;
     ranks.own_findings = {};
     ranks.own_findings.stop = ranks.stops;
     if (!possible) {
-        left_out = false;
+        skipped = false;
         return;
     }
     ranks.all_findings = ranks.own_findings;
-    ranks.all_findings.moves = !left_out;
+    ranks.all_findings.moves = !skipped;
     if (verdict.fault != StepFault::none) {
         ranks.all_findings.fault = verdict.fault;
         ranks.all_findings.fault_body = ranks.world_row_of(verdict.body);
         ranks.all_findings.fault_value = verdict.value;
     }
     reduce<combine>(*ranks.ranks, ranks.all_findings);
-    left_out = !ranks.all_findings.moves;
+    skipped = !ranks.all_findings.moves;
     verdict = {};
-    if (!left_out && ranks.all_findings.fault != StepFault::none)
-        verdict = {.fault = ranks.all_findings.fault, .body = ranks.all_findings.fault_body, .value = ranks.all_findings.fault_value};
+    if (!skipped && ranks.all_findings.fault != StepFault::none)
+        verdict = {.fault = ranks.all_findings.fault,
+                   .body = ranks.all_findings.fault_body,
+                   .value = ranks.all_findings.fault_value};
 }
 
 }  // namespace skerry

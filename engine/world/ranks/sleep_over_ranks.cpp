@@ -15,7 +15,7 @@ namespace {
 
 /// Bodies, with the ranks that hold them.
 struct HeldBodies {
-    std::span<const Index> world_row;                  // by body: its row in the undivided world
+    std::span<const Index> world_row;              // by body: its row in the undivided world
     const std::vector<std::vector<int>>& holders;  // RankState
     std::span<const BodyKind> kind;                // BodyTable
     std::span<const std::uint8_t> asleep;
@@ -54,7 +54,8 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& own_findings) {
     for (std::size_t b = 0; b < bodies.world_row.size(); ++b)
-        own_findings.may_rest |= bodies.is_shared(b) && !bodies.asleep[b] && bodies.still_time[b] + step.h >= step.sleep.time;
+        own_findings.may_rest |=
+            bodies.is_shared(b) && !bodies.asleep[b] && bodies.still_time[b] + step.h >= step.sleep.time;
     memory.woken.clear();
     if (std::ranges::none_of(bodies.asleep, [](std::uint8_t each) { return each != 0; })) return;
     copy(bodies.asleep, memory.asleep);
@@ -109,7 +110,7 @@ void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, R
                 if (*known == no_index) *known = node;
                 memory.joined.join(*known, node);
             }
-            memory.restless[node] = member.must_stay_up != 0;
+            memory.restless[node] = member.stays_awake != 0;
             ++node;
         });
     }
@@ -125,8 +126,8 @@ void list_wakes(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     g.stage("ranks/find_wakes", find_wakes, inputs<HeldBodies>(w.ranks, w.model.bodies),
             inputs<TouchInputs>(w.scratch.contacts, w.model.links), read(w.scratch.pressed), read(w.scratch.driven),
-            read(w.model.attachments), inputs<SleepStep>(w.scratch.parameters), make(w.ranks.sleep), make(w.ranks.own_findings),
-            if_sleepy(w));
+            read(w.model.attachments), inputs<SleepStep>(w.scratch.parameters), make(w.ranks.sleep),
+            make(w.ranks.own_findings), if_sleepy(w));
 }
 
 void list_joined_wakes(WorldState& w, TaskGraph& g) {

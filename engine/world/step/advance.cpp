@@ -167,7 +167,7 @@ void complete_step(WorldState& world, std::uint64_t let_through, StepReport& rep
 /// later, because positions are ahead of velocities (leapfrog).
 bool check_after_rounds(WorldState& world) {
     world.draw();
-    if (!world.scratch.left_out)
+    if (!world.scratch.skipped)
         find_self_crossings(*world.executor, world.model, world.clock.time, world.scratch.self_crossing_places,
                             world.record.self_crossings);
     if (world.clock.offset != 0) return false;
@@ -270,11 +270,11 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     require_countable(world, dt);
     StepReport report;
     const Real end = clock.time + dt;
-    Real left = dt;
+    Real remaining = dt;
     AttemptLimits attempt = limits_of_first_attempt(world);
     // Stored crossings belong to a step that the last call of advance abandoned. Bodies may have changed since then.
     world.cache.crossings.row.clear();
-    if (world.record.counters.steps == 0 && left > 0)
+    if (world.record.counters.steps == 0 && remaining > 0)
         check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // if there are force elements, they read all nodes in every step, so nodes that only draw round bodies must be up
@@ -299,7 +299,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         drift_to(*world.executor, offset, model, clock, search);
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
-    while (left > 0) {
+    while (remaining > 0) {
         if (go_on && !stops && !callbacks.run([&] { return go_on(std::as_const(report)); })) stops = true;
         // The stages of each step tell all ranks whether one of them stops (all.stop), so all ranks end the call after
         // the same step.
@@ -316,7 +316,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         // Attempts with longer lists or with crossings must keep the step length for which the lists or crossings were
         // found.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
-        const Real within = left_in_long_step(model, left, clock.long_step);
+        const Real within = time_to_end_of_long_step(model, remaining, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
         if (model.watch.first_piece.empty()) count_pieces(world);
         store_shapes(*world.executor, model, steps_per_round(world));
@@ -336,7 +336,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         }
         if (outcome != StepOutcome::committed) continue;
         complete_step(world, let_through, report);
-        left = plan.steps > 1 || within < left ? left - plan.h : 0;
+        remaining = plan.steps > 1 || within < remaining ? remaining - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
         balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world) && !check_after_rounds(world)) check_at_end = true;
@@ -349,7 +349,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         if (!heard && !world.ranks.on()) break;
     }
     // A rank may have asked to stop in the last step. The loop then ends before its check of all.stop.
-    if (!(left > 0) && world.ranks.all_findings.stop) report.status = StepStatus::stopped;
+    if (!(remaining > 0) && world.ranks.all_findings.stop) report.status = StepStatus::stopped;
     clock.long_step = {};                // no long step continues in the next call
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
     if (report.steps == 0) {
@@ -368,7 +368,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     join_reports(world, report);
     world.draw();
     world.query_trees.forget();
-    if (left == 0) clock.time = end;
+    if (remaining == 0) clock.time = end;
     if (check_at_end) check_balance_after_motion(world);
     return report;
 }

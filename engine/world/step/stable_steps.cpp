@@ -216,8 +216,8 @@ Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
 
 namespace {
 
-/// Number of pieces into which the check of a body's stable step is divided; sent to other ranks. `world_row`: row of the
-/// body in the undivided world.
+/// Number of pieces into which the check of a body's stable step is divided; sent to other ranks. `world_row`: row of
+/// the body in the undivided world.
 struct PiecesOfBody {
     Index world_row;
     std::uint32_t pieces;

@@ -47,8 +47,8 @@ void sort_self_crossings(WorldState& world) {
     });
 }
 
-/// Collective: all ranks must call it. Returns the message of rank 0. `own_message`: message of this rank, used only on rank
-/// 0.
+/// Collective: all ranks must call it. Returns the message of rank 0. `own_message`: message of this rank, used only on
+/// rank 0.
 RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> own_message) {
     return std::move(ranks.gather_everywhere(own_message).front());
 }
@@ -208,7 +208,8 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
         std::string name;
         take_value(reader, name);
         whole.records.push_back(record_of_name(std::move(name)));
-        if (whole.owner[world_row] == WholeWorld::everywhere) state.ranks.world_row.push_back(static_cast<Index>(world_row));
+        if (whole.owner[world_row] == WholeWorld::everywhere)
+            state.ranks.world_row.push_back(static_cast<Index>(world_row));
     }
     join_ranks(state.ranks, ranks, settings, state.record.counters.steps);
     whole.holders = find_holders(whole, whole.owner, extents, ranks.size());
@@ -221,11 +222,12 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
 std::optional<World> gather_parts(WorldState& state) {
     const RankState& rank_state = state.ranks;
     std::vector<std::uint8_t> sent;
-    for (const Index world_row : rank_state.world_row) sent.push_back(rank_state.whole.owner[world_row] == rank_state.rank);
+    for (const Index world_row : rank_state.world_row)
+        sent.push_back(rank_state.whole.owner[world_row] == rank_state.rank);
     std::vector<BodyRows> added;
     for (Index batch = 0; batch < batches; ++batch) {
-        const std::vector<RankMessage> bodies =
-            rank_state.ranks->gather(rank_state.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, rank_state.rank, false));
+        const std::vector<RankMessage> bodies = rank_state.ranks->gather(
+            rank_state.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, rank_state.rank, false));
         for (std::size_t rank = 1; rank < bodies.size(); ++rank) added.push_back(rows_of_message(bodies[rank]));
     }
     if (rank_state.rank != 0) return std::nullopt;

@@ -98,8 +98,8 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
         std::int32_t& owner = owner_of_unit[static_cast<std::size_t>(unit.unit)];
         switch (settings.map) {
             case OwnerMap::curve:
-                owner =
-                    std::min(static_cast<std::int32_t>((cost_before + unit.cost / 2) / total * rank_count), rank_count - 1);
+                owner = std::min(static_cast<std::int32_t>((cost_before + unit.cost / 2) / total * rank_count),
+                                 rank_count - 1);
                 cost_before += unit.cost;
                 break;
             case OwnerMap::round_robin:
@@ -158,7 +158,8 @@ std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<co
     }
     std::vector<std::vector<int>> holders(whole.size());
     for (const BodyExtent& body : extents)
-        holders[static_cast<std::size_t>(body.world_row)] = holders_of_unit[static_cast<std::size_t>(whole.unit[body.world_row])];
+        holders[static_cast<std::size_t>(body.world_row)] =
+            holders_of_unit[static_cast<std::size_t>(whole.unit[body.world_row])];
     return holders;
 }
 

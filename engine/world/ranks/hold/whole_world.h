@@ -51,7 +51,9 @@ struct WholeWorld {
         const bool of_first = pair.is_collider || !PairOwners::belongs_to_second(pair.first, pair.second);
         return owners[static_cast<std::size_t>(row_of_slot(of_first ? pair.first : pair.second))];
     }
-    BodyHandle handle(const Model& model, Index world_row) const { return model.body_map.handle_of_slot(slot[world_row]); }
+    BodyHandle handle(const Model& model, Index world_row) const {
+        return model.body_map.handle_of_slot(slot[world_row]);
+    }
 };
 
 /// Facts about a world that is not yet divided. All bodies belong to rank 0.

@@ -42,7 +42,7 @@ struct MailedContact {
 
 /// The bodies of a rank and the other ranks that hold them.
 struct SharedBodies {
-    std::span<const Index> world_row;                  // by body: its row in the undivided world
+    std::span<const Index> world_row;              // by body: its row in the undivided world
     std::span<const std::int32_t> owner;           // RankState
     const std::vector<std::vector<int>>& holders;  // RankState
     const std::vector<int>& peers;                 // RankState
@@ -65,8 +65,8 @@ struct SharedBodies {
         const auto body = static_cast<std::size_t>(body_of(node));
         return {world_row[body], node - nodes[body].begin};
     }
-    /// Row of BodyTable of the body with the row `row_in_world` in the undivided world; no_index if this rank does not hold
-    /// it.
+    /// Row of BodyTable of the body with the row `row_in_world` in the undivided world; no_index if this rank does not
+    /// hold it.
     Index row_of(Index row_in_world) const { return local_row(world_row, row_in_world); }
     /// Row of NodeTable; no_index if this rank does not hold the body.
     Index node_of(const NodeName& name) const {

@@ -146,12 +146,15 @@ public:
         for (std::size_t b = 0; b < world_row_before_.size(); ++b)
             record(world_row_before_[b]) = std::move(model_.body_records[b]);
         for (BodyRows& rows : added)
-            for (std::size_t b = 0; b < rows.records.size(); ++b) record(rows.world_row[b]) = std::move(rows.records[b]);
+            for (std::size_t b = 0; b < rows.records.size(); ++b)
+                record(rows.world_row[b]) = std::move(rows.records[b]);
         model_.body_records.clear();
-        for (const Index world_row : world_.ranks.world_row) model_.body_records.push_back(std::move(record(world_row)));
+        for (const Index world_row : world_.ranks.world_row)
+            model_.body_records.push_back(std::move(record(world_row)));
         if (world_.ranks.rank == 0) return;
         for (const Index world_row : world_row_before_)
-            if (world_.ranks.row_of(world_row) == no_index) record(world_row) = record_of_name(std::move(record(world_row).name));
+            if (world_.ranks.row_of(world_row) == no_index)
+                record(world_row) = record_of_name(std::move(record(world_row).name));
     }
 
     void derived_columns() const {
@@ -254,8 +257,8 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                   const WantsPair& keeps_pair) {
     Model& model = world.model;
     RankState& ranks = world.ranks;
-    // Copies of data that are needed below: compose_rows frees all tables of bodies except BodyTable, and ranks.world_row
-    // is overwritten.
+    // Copies of data that are needed below: compose_rows frees all tables of bodies except BodyTable, and
+    // ranks.world_row is overwritten.
     const Column<Index> world_row_before = ranks.world_row, body_of_node = model.nodes.body;
     std::vector<OfBodyTables<Range>> rows_before;
     for (std::size_t b = 0; b < world_row_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));
@@ -279,7 +282,8 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     Model fresh;
     ranks.world_row = compose_rows(sources, ranks.whole, fresh);
     RowMoves& moves = sources[0].moves;
-    const std::vector<std::uint8_t> exchanged = find_exchanged(rows_before, world_row_before, fresh, ranks.world_row, moves);
+    const std::vector<std::uint8_t> exchanged =
+        find_exchanged(rows_before, world_row_before, fresh, ranks.world_row, moves);
     moves.collider_now.resize(model.colliders.slot.size());
     std::iota(moves.collider_now.begin(), moves.collider_now.end(), Index{0});
     keep_contacts(moves, body_of_node, keeps_pair, world);
@@ -320,8 +324,8 @@ void for_each_column(BodyRows& rows, auto&& visit) {
          {AnyColumn(clusters.nodes.offset), AnyColumn(clusters.nodes.item), AnyColumn(clusters.body),
           AnyColumn(clusters.first_entry), AnyColumn(clusters.inverse), AnyColumn(clusters.cluster_of),
           AnyColumn(clusters.place), AnyColumn(rows.model.watch.position), AnyColumn(rows.model.watch.stiffness_sum),
-          AnyColumn(rows.model.watch.step), AnyColumn(rows.world_row), AnyColumn(rows.watch), AnyColumn(rows.valid_until),
-          AnyColumn(rows.self_crossings), AnyColumn(rows.enabled_pairs)})
+          AnyColumn(rows.model.watch.step), AnyColumn(rows.world_row), AnyColumn(rows.watch),
+          AnyColumn(rows.valid_until), AnyColumn(rows.self_crossings), AnyColumn(rows.enabled_pairs)})
         visit(column);
     visit_all(rows.warm_start);
     visit_all(rows.resting);

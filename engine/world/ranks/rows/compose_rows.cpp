@@ -89,21 +89,21 @@ public:
         append_watch();
         append_attachments();
         append_joining_rows();
-        return std::move(place_);
+        return std::move(world_row_);
     }
 
 private:
     void pick_bodies() {
         for (std::size_t s = 0; s < sources_.size(); ++s) {
-            RowSource& from = sources_[s];
-            from.moves.body_now.assign(from.world_row.size(), no_index);
-            from.moves.down.resize(from.world_row.size());
-            for (std::size_t b = 0; b < from.world_row.size(); ++b)
-                if (from.gives(b)) picks_.push_back({from.world_row[b], s, b});
+            RowSource& row_source = sources_[s];
+            row_source.moves.body_now.assign(row_source.world_row.size(), no_index);
+            row_source.moves.down.resize(row_source.world_row.size());
+            for (std::size_t b = 0; b < row_source.world_row.size(); ++b)
+                if (row_source.gives(b)) picks_.push_back({row_source.world_row[b], s, b});
         }
         std::ranges::sort(picks_, {}, &Pick::order);
         for (std::size_t row = 0; row < picks_.size(); ++row) {
-            place_.push_back(picks_[row].order);
+            world_row_.push_back(picks_[row].order);
             sources_[picks_[row].source].moves.body_now[picks_[row].row] = static_cast<Index>(row);
         }
     }
@@ -301,7 +301,7 @@ private:
     Model& to_;
     std::vector<std::vector<AnyColumn>> columns_ = columns_by_body_table(to_);
     std::vector<Pick> picks_;  // by new row of BodyTable
-    Column<Index> place_;
+    Column<Index> world_row_;
 };
 
 }  // namespace

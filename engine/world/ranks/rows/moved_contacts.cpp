@@ -123,10 +123,10 @@ void reorder_lists(std::span<const std::size_t> order, auto& lists) {
 
 /// Rows of a table for which wants(row) is false, as ascending ranges.
 std::vector<Range> unwanted(std::size_t count, auto&& wants) {
-    std::vector<Range> gone;
+    std::vector<Range> removed;
     for (std::size_t row = 0; row < count; ++row)
-        if (!wants(row)) append_gone(Range{static_cast<Index>(row), static_cast<Index>(row) + 1}, gone);
-    return gone;
+        if (!wants(row)) append_gone(Range{static_cast<Index>(row), static_cast<Index>(row) + 1}, removed);
+    return removed;
 }
 
 /// Renumbers crossings that earlier attempts at the present step have found. Removes those of bodies without a new row.
