@@ -40,16 +40,17 @@ Real period_of(const std::vector<Real>& sag, Real peak, Real about) {
     return passed.size() < 5 ? about : (passed[4] - passed[0]) / 4;
 }
 
-Swing measure(const Case& one) {
+Swing measure(const Case& test_case) {
     const Mesh mesh = mesh::box({1, 0.1, 0.1}, {20, 2, 2});
     Settings settings;
     settings.backend = Backend::serial;
-    settings.step_size = one.step;
-    settings.theta = one.theta;
+    settings.step_size = test_case.step;
+    settings.theta = test_case.theta;
     World world(settings);
-    const auto material =
-        world.add_material({.young_modulus = one.modulus, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0});
-    const auto body = world.add_body(mesh, {.material = material, .dynamics = one.dynamics, .element = one.element});
+    const auto material = world.add_material(
+        {.young_modulus = test_case.modulus, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0});
+    const auto body =
+        world.add_body(mesh, {.material = material, .dynamics = test_case.dynamics, .element = test_case.element});
     std::vector<Index> held;
     std::size_t tip = 0;
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
@@ -57,22 +58,23 @@ Swing measure(const Case& one) {
         if ((mesh.nodes[n] - Vec3(0.5, 0, 0)).norm() < 1e-9) tip = n;
     }
     world.attach(body, held);
-    world.advance(one.step);  // computes its factor, once
+    world.advance(test_case.step);  // computes its factor, once
     std::vector<Real> sag{0, -world.positions(body)[tip].z()};
-    const Real beam = 0.619 * std::sqrt(1e7 / one.modulus);  // period by the theory of beams [s]
-    const auto steps = static_cast<std::size_t>(5.2 * beam / one.step);
+    const Real beam = 0.619 * std::sqrt(1e7 / test_case.modulus);  // period by the theory of beams [s]
+    const auto steps = static_cast<std::size_t>(5.2 * beam / test_case.step);
     const double start = cpu_seconds();
     while (sag.size() < steps) {
-        world.advance(one.step);
+        world.advance(test_case.step);
         sag.push_back(-world.positions(body)[tip].z());
     }
     Swing swing;
-    swing.cpu = (cpu_seconds() - start) / (one.step * static_cast<Real>(steps - 2));
-    const auto first = std::max_element(sag.begin(), sag.begin() + static_cast<std::ptrdiff_t>(0.65 * beam / one.step));
+    swing.cpu = (cpu_seconds() - start) / (test_case.step * static_cast<Real>(steps - 2));
+    const auto first =
+        std::max_element(sag.begin(), sag.begin() + static_cast<std::ptrdiff_t>(0.65 * beam / test_case.step));
     swing.peak = *first;
-    swing.period = period_of(sag, swing.peak, static_cast<Real>(2 * (first - sag.begin()))) * one.step;
+    swing.period = period_of(sag, swing.peak, static_cast<Real>(2 * (first - sag.begin()))) * test_case.step;
     const auto at = [&](Real periods) {
-        return sag.begin() + static_cast<std::ptrdiff_t>(std::lround(periods * swing.period / one.step));
+        return sag.begin() + static_cast<std::ptrdiff_t>(std::lround(periods * swing.period / test_case.step));
     };
     const auto [low, high] = std::minmax_element(at(4), at(5) + 1);
     swing.left = (*high - *low) / swing.peak;
@@ -87,12 +89,13 @@ int main(int argc, char** argv) {
     std::printf(
         "| E (Pa) | elements | bodies | theta | step (ms) | T1 (s) | peak (mm) | left | CPU s a simulated s |\n"
         "|---|---|---|---|---|---|---|---|---|\n");
-    const auto print = [](const Case& one) {
-        const Swing swing = measure(one);
-        const bool implicit = one.dynamics == BodyDynamics::implicit_elastic;
-        std::printf("| %.0e | %s | %s | %g | %.3g | %.5f | %.4g | %.3f | %.2f |\n", one.modulus,
-                    one.element == ElementKind::linear ? "linear" : "smoothed", implicit ? "implicit" : "explicit",
-                    one.theta, 1e3 * one.step, swing.period, 1e3 * swing.peak, swing.left, swing.cpu);
+    const auto print = [](const Case& test_case) {
+        const Swing swing = measure(test_case);
+        const bool implicit = test_case.dynamics == BodyDynamics::implicit_elastic;
+        std::printf("| %.0e | %s | %s | %g | %.3g | %.5f | %.4g | %.3f | %.2f |\n", test_case.modulus,
+                    test_case.element == ElementKind::linear ? "linear" : "smoothed",
+                    implicit ? "implicit" : "explicit", test_case.theta, 1e3 * test_case.step, swing.period,
+                    1e3 * swing.peak, swing.left, swing.cpu);
         std::fflush(stdout);
     };
     for (const Real modulus : {1e7, 1e9}) {

@@ -41,17 +41,17 @@ public:
     Gripper(World& world, MaterialHandle rubber, const Options& options) : world_(world), pads_(options.pads) {
         const Vec3 size(2 * half, 0.04, 0.04);
         for (std::size_t i = 0; i < 2; ++i) {
-            const Vec3 place(i == 0 ? -open : open, 0, radius);
+            const Vec3 position(i == 0 ? -open : open, 0, radius);
             if (!pads_) {
-                collider_[i] = world.add_collider(Box{size}, {.position = place});
+                collider_[i] = world.add_collider(Box{size}, {.position = position});
                 continue;
             }
             const Mesh pad = mesh::box(size, {2, 4, 4});
-            body_[i] = world.add_body(pad, {.material = rubber, .position = place, .element = options.element});
+            body_[i] = world.add_body(pad, {.material = rubber, .position = position, .element = options.element});
             std::vector<Index> back;
             for (std::size_t n = 0; n < pad.nodes.size(); ++n)
                 if ((i == 0 ? -1 : 1) * pad.nodes[n].x() > half - 1e-9) back.push_back(static_cast<Index>(n));
-            attachment_[i] = world.attach(body_[i], back, {}, place);
+            attachment_[i] = world.attach(body_[i], back, {}, position);
         }
     }
     void move_to(Real apart, Real height) {

@@ -118,22 +118,22 @@ struct Contestant {
 
 std::vector<Contestant> contestants_of(const std::string& scene, const std::filesystem::path& self,
                                        const Options& options) {
-    std::vector<Contestant> all;
+    std::vector<Contestant> contestants;
     const auto add = [&](const std::string& engine, const std::string& setting, Real step, const std::string& command) {
-        all.push_back({.peer = {.engine = engine, .variant = setting, .command = command}, .step = step});
+        contestants.push_back({.peer = {.engine = engine, .variant = setting, .command = command}, .step = step});
     };
     for (const bool linear : {false, true})
         for (const std::string& set : options.sets) {
             add("Skerry", linear ? "linear elements" : "default elements", 0,
                 "env SKERRY_INSTRUCTION_SET=" + set + " '" + self.string() + "' skerry " + (linear ? "--linear " : "") +
                     "--drop '" + std::filesystem::absolute(scene).string() + "'");
-            all.back().set = set;
+            contestants.back().set = set;
         }
     for (const auto& [engine, setting, step, command] : options.peers) add(engine, setting, step, command);
     for (const Peer& peer : find_peers(self.parent_path(), options.python))
         for (const double rate : {60.0, 240.0})
-            if (!peer.explicit_step) all.push_back({.peer = peer, .step = 1 / rate});
-    return all;
+            if (!peer.explicit_step) contestants.push_back({.peer = peer, .step = 1 / rate});
+    return contestants;
 }
 
 /// Greatest number of inverted tetrahedra in a sample.
@@ -167,49 +167,50 @@ Real height_of(const PrecisionScene& scene, const Record& record) {
 }
 
 /// Prints a row and writes it to the table. `reference`: CPU times of the contestant that the ratio is relative to.
-void write(const PrecisionScene& scene, const Contestant& one, const std::vector<double>& reference,
+void write(const PrecisionScene& scene, const Contestant& contestant, const std::vector<double>& reference,
            std::ofstream& table) {
-    const Peer& peer = one.peer;
-    if (!one.first.finished) {
+    const Peer& peer = contestant.peer;
+    if (!contestant.first.finished) {
         std::printf("%-8s %-7s %-22s %-10s did not finish\n", scene.name.c_str(), peer.engine.c_str(),
-                    peer.variant.c_str(), one.set.c_str());
+                    peer.variant.c_str(), contestant.set.c_str());
         return;
     }
     std::vector<double> cpu, ratio;
-    for (std::size_t r = 0; r < one.seconds.size(); ++r) {
-        cpu.push_back(one.seconds[r] / scene.seconds);
-        ratio.push_back(one.seconds[r] / reference[r]);
+    for (std::size_t r = 0; r < contestant.seconds.size(); ++r) {
+        cpu.push_back(contestant.seconds[r] / scene.seconds);
+        ratio.push_back(contestant.seconds[r] / reference[r]);
     }
     const auto [low, high] = std::ranges::minmax(cpu);
-    const Measures m = measure(scene, one.first);
-    const Real height = height_of(scene, one.first);
-    const int inverted = inverted_of(scene, one.first);
+    const Measures m = measure(scene, contestant.first);
+    const Real height = height_of(scene, contestant.first);
+    const int inverted = inverted_of(scene, contestant.first);
     std::printf("%-8s %-7s %-22s %-10s %8.3f %8.3f %6.2f %8.1f %8.4f %8.2f %8d\n", scene.name.c_str(),
-                peer.engine.c_str(), peer.variant.c_str(), one.set.c_str(), 1e3 * one.first.step, median(cpu),
-                median(ratio), 1e3 * height, m.speed, 1e3 * m.overlap, inverted);
-    table << scene.name << ',' << peer.engine << ",\"" << peer.variant << "\"," << one.set << ',' << one.first.step
-          << ',' << cpu.size() << ',' << median(cpu) << ',' << low << ',' << high << ',' << median(ratio) << ','
-          << height << ',' << m.speed << ',' << m.overlap << ',' << m.overlap_at_end << ',' << inverted << '\n'
+                peer.engine.c_str(), peer.variant.c_str(), contestant.set.c_str(), 1e3 * contestant.first.step,
+                median(cpu), median(ratio), 1e3 * height, m.speed, 1e3 * m.overlap, inverted);
+    table << scene.name << ',' << peer.engine << ",\"" << peer.variant << "\"," << contestant.set << ','
+          << contestant.first.step << ',' << cpu.size() << ',' << median(cpu) << ',' << low << ',' << high << ','
+          << median(ratio) << ',' << height << ',' << m.speed << ',' << m.overlap << ',' << m.overlap_at_end << ','
+          << inverted << '\n'
           << std::flush;
 }
 
 void compare(const std::string& file, const std::filesystem::path& self, const Options& options, std::ofstream& table) {
     const PrecisionScene scene = read_drop(file);
-    std::vector<Contestant> all = contestants_of(file, self, options);
+    std::vector<Contestant> contestants = contestants_of(file, self, options);
     for (int r = 0; r < options.rounds; ++r)
-        for (Contestant& one : all) {
-            if (r > 0 && !one.first.finished) continue;
+        for (Contestant& contestant : contestants) {
+            if (r > 0 && !contestant.first.finished) continue;
             std::fprintf(stderr, "\r\033[K%s, %d of %d: %s, %s", scene.name.c_str(), r + 1, options.rounds,
-                         one.peer.engine.c_str(), one.peer.variant.c_str());
-            Record record = run_peer(scene, one.peer, one.step, 1, options.cap, options.out / "runs");
-            one.seconds.push_back(record.seconds);
-            if (r == 0) one.first = std::move(record);
+                         contestant.peer.engine.c_str(), contestant.peer.variant.c_str());
+            Record record = run_peer(scene, contestant.peer, contestant.step, 1, options.cap, options.out / "runs");
+            contestant.seconds.push_back(record.seconds);
+            if (r == 0) contestant.first = std::move(record);
         }
     std::fprintf(stderr, "\r\033[K");
-    if (!all.front().first.finished)
-        throw std::runtime_error(scene.name + ": Skerry with the instruction set " + all.front().set +
+    if (!contestants.front().first.finished)
+        throw std::runtime_error(scene.name + ": Skerry with the instruction set " + contestants.front().set +
                                  " did not finish; does this machine have the set (--sets)?");
-    for (const Contestant& one : all) write(scene, one, all.front().seconds, table);
+    for (const Contestant& contestant : contestants) write(scene, contestant, contestants.front().seconds, table);
 }
 
 }  // namespace

@@ -42,26 +42,27 @@ struct Cost {
 Cost operator+(const Cost& a, const Cost& b) {
     return {a.bytes + b.bytes, a.flops + b.flops, a.single_flops + b.single_flops};
 }
-Cost element_cost(MaterialModel model, const Density& of) {
-    const double others = of.nodes - of.elements;
-    const Cost shared{24 * others + 4 * of.nodes + 132 * of.slots + 8.5 * of.elements + 4,
-                      36 * others + 3 * of.nodes + 9 * of.elements};
+Cost element_cost(MaterialModel model, const Density& density) {
+    const double others = density.nodes - density.elements;
+    const Cost shared{24 * others + 4 * density.nodes + 132 * density.slots + 8.5 * density.elements + 4,
+                      36 * others + 3 * density.nodes + 9 * density.elements};
     return with_law(model, [&](auto law) -> Cost {
         if constexpr (law.has_frame)
-            return {shared.bytes + 96 * of.elements, shared.flops + (2 * 172 + 24 + law.stress_flops) * of.elements};
-        return {shared.bytes, shared.flops + law.stress_flops * of.elements};
+            return {shared.bytes + 96 * density.elements,
+                    shared.flops + (2 * 172 + 24 + law.stress_flops) * density.elements};
+        return {shared.bytes, shared.flops + law.stress_flops * density.elements};
     });
 }
 /// Additional cost of losses. Bytes: strains of the springs 104 for the load, 104 for the store and 104 for the fetch
 /// before it; frequency 8. Flops in double precision: strain 33, sum of the stresses 39, others 10. Flops in single
 /// precision: 41 for each spring, 14 for their sums, 30 others.
-Cost loss_cost(const Density& of) {
-    return {320 * of.elements, 82 * of.elements, (41 * maxwell_count + 44) * of.elements};
+Cost loss_cost(const Density& density) {
+    return {320 * density.elements, 82 * density.elements, (41 * maxwell_count + 44) * density.elements};
 }
 /// Cost of the gather with its kick (velocity update). Per slot: force 32 and number 4 bytes, 3 additions. Per
 /// tetrahedron: 0.18 nodes of 92 bytes and 15 flops.
-Cost gather_cost(const Density& of) {
-    return {36 * of.slots + 17, 3 * of.slots + 3};
+Cost gather_cost(const Density& density) {
+    return {36 * density.slots + 17, 3 * density.slots + 3};
 }
 
 /// The shortest time of all repeats, because other programs can only make a run slower [s].

@@ -64,8 +64,9 @@ int main(int argc, char** argv) {
         "surface,faults,triangles,mesher,time [s],tetrahedra,worst quality,mean quality,volume error,"
         "distance from surface / tolerance,distance from mesh / tolerance,step [s]\n");
     if (!no_corpus)
-        for (const test::CorpusSurface& of : test::surface_corpus())
-            print_row(of.name, [&] { return mesh::fill(of.surface, of.name, settings); });
+        for (const test::CorpusSurface& corpus_surface : test::surface_corpus())
+            print_row(corpus_surface.name,
+                      [&] { return mesh::fill(corpus_surface.surface, corpus_surface.name, settings); });
     for (const std::filesystem::path& file : files)
         print_row(file.stem().string(), [&] { return mesh::fill(std::vector{file}, settings); });
     if (million) {

@@ -50,7 +50,7 @@ Subject block(int cells = 1) {
 struct Case {
     Subject subject;
     MaterialSettings material{.young_modulus = 1e5, .poisson_ratio = 0.3};
-    Real above = 0;  // initial height of the lowest point above the plane [m]
+    Real height = 0;  // initial height of the lowest point above the plane [m]
     Real step_safety = 1;
 };
 
@@ -94,20 +94,20 @@ Real expected_acceleration(const Subject& subject, Real angle) {
                          : gravity * (std::sin(angle) - subject.friction * std::cos(angle));
 }
 
-Motion run(const Case& one, Real offset, Real seconds) {
+Motion run(const Case& test_case, Real offset, Real seconds) {
     Settings settings;
-    settings.gravity = gravity_at(angle_of(one.subject, offset));
+    settings.gravity = gravity_at(angle_of(test_case.subject, offset));
     settings.backend = Backend::serial;
     settings.threads = 1;
-    World world = tuned_world(settings, {.step_safety = one.step_safety});
-    MaterialSettings material = one.material;
-    material.friction = one.subject.friction;
+    World world = tuned_world(settings, {.step_safety = test_case.step_safety});
+    MaterialSettings material = test_case.material;
+    material.friction = test_case.subject.friction;
     world.add_collider(Plane{});
-    const auto body = world.add_body(one.subject.mesh, {.material = world.add_material(material),
-                                                        .position = {0, 0, one.above},
-                                                        .dynamics = BodyDynamics::explicit_elastic});
+    const auto body = world.add_body(test_case.subject.mesh, {.material = world.add_material(material),
+                                                              .position = {0, 0, test_case.height},
+                                                              .dynamics = BodyDynamics::explicit_elastic});
     const Real shell = world.contact_distance(body) / 2;  // a plane contributes nothing to the distance
-    const Real at_shell = world.center_of_mass(body).z() - one.above + shell;
+    const Real at_shell = world.center_of_mass(body).z() - test_case.height + shell;
 
     Motion motion;
     const double start = profiling::cpu_seconds();
@@ -118,7 +118,7 @@ Motion run(const Case& one, Real offset, Real seconds) {
             throw std::runtime_error(report.message());
         const Vec3 center = world.center_of_mass(body);
         motion.hop = std::max(motion.hop, center.z() - at_shell);
-        motion.add(one.subject, world.positions(body), center);
+        motion.add(test_case.subject, world.positions(body), center);
     }
     motion.cpu = profiling::cpu_seconds() - start;
     motion.energy_share = world.report().energy_error_share;
@@ -126,20 +126,20 @@ Motion run(const Case& one, Real offset, Real seconds) {
 }
 
 /// Runs a peer. Returns nothing if it does not reach the end.
-std::optional<Motion> run(const Case& one, Real offset, Real seconds, const profiling::Peer& peer, Real step,
+std::optional<Motion> run(const Case& test_case, Real offset, Real seconds, const profiling::Peer& peer, Real step,
                           const std::filesystem::path& folder) {
     World world;
-    const auto handle = world.add_body(one.subject.mesh, {.material = world.add_material(one.material)});
+    const auto handle = world.add_body(test_case.subject.mesh, {.material = world.add_material(test_case.material)});
     profiling::PrecisionScene scene;
-    scene.material = one.material;
-    scene.material.friction = one.subject.friction;
+    scene.material = test_case.material;
+    scene.material.friction = test_case.subject.friction;
     scene.contact_distance = world.contact_distance(handle) / 2;
-    scene.gravity = {{.time = 0, .gravity = gravity_at(angle_of(one.subject, offset))}};
+    scene.gravity = {{.time = 0, .gravity = gravity_at(angle_of(test_case.subject, offset))}};
     scene.planes = {{}};
     scene.seconds = seconds;
     scene.samples = static_cast<int>(std::lround(seconds * samples_a_second));
-    profiling::PrecisionBody body{.mesh = one.subject.mesh, .velocity = {}, .fixed = {}, .mass = {}};
-    for (Vec3& node : body.mesh.nodes) node.z() += one.above;
+    profiling::PrecisionBody body{.mesh = test_case.subject.mesh, .velocity = {}, .fixed = {}, .mass = {}};
+    for (Vec3& node : body.mesh.nodes) node.z() += test_case.height;
     body.velocity.assign(body.mesh.nodes.size(), Vec3::Zero());
     scene.bodies.push_back(std::move(body));
     profiling::set_masses(scene);
@@ -155,7 +155,7 @@ std::optional<Motion> run(const Case& one, Real offset, Real seconds, const prof
             sum += masses[n] * position[n];
             mass += masses[n];
         }
-        motion.add(one.subject, position, sum / mass);
+        motion.add(test_case.subject, position, sum / mass);
     }
     motion.cpu = record.seconds;
     return motion;
@@ -196,8 +196,9 @@ void print_row(const std::string& head, const Subject& subject, Real seconds, Ru
     std::fflush(stdout);
 }
 
-void print_row(const std::string& head, const Case& one, Real seconds) {
-    print_row(head, one.subject, seconds, [&](Real offset) { return std::optional(run(one, offset, seconds)); });
+void print_row(const std::string& head, const Case& test_case, Real seconds) {
+    print_row(head, test_case.subject, seconds,
+              [&](Real offset) { return std::optional(run(test_case, offset, seconds)); });
 }
 
 void print_head(const char* first) {
@@ -205,34 +206,34 @@ void print_head(const char* first) {
     std::printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
 }
 
-std::string start_name(Real above) {
-    return above == 0 ? "on the plane" : number("%.0f mm above", 1e3 * above);
+std::string start_name(Real height) {
+    return height == 0 ? "on the plane" : number("%.0f mm above", 1e3 * height);
 }
 
 void print_starts(const Subject& subject, const MaterialSettings& material, const std::vector<Real>& moduli,
                   Real seconds) {
     print_head("E, start");
     for (const Real modulus : moduli)
-        for (const Real above : {0.0, 0.003}) {
-            Case one{.subject = subject, .material = material, .above = above};
-            one.material.young_modulus = modulus;
-            print_row(number("%.0e, ", modulus) + start_name(above), one, seconds);
+        for (const Real height : {0.0, 0.003}) {
+            Case test_case{.subject = subject, .material = material, .height = height};
+            test_case.material.young_modulus = modulus;
+            print_row(number("%.0e, ", modulus) + start_name(height), test_case, seconds);
         }
 }
 
 void print_peers(Real seconds, const std::vector<profiling::Peer>& peers, const std::filesystem::path& folder) {
     print_head("E, engine, step");
     for (const Real modulus : {1e5, 1e6}) {
-        Case one{.subject = block(), .above = 0.003};
-        one.material.young_modulus = modulus;
-        print_row(number("%.0e, ", modulus) + "Skerry, its own", one, seconds);
+        Case test_case{.subject = block(), .height = 0.003};
+        test_case.material.young_modulus = modulus;
+        print_row(number("%.0e, ", modulus) + "Skerry, its own", test_case, seconds);
         for (const profiling::Peer& peer : peers)
             for (const Real step : {2e-3, 5e-4}) {
                 if (peer.explicit_step) continue;
                 const std::string head =
                     number("%.0e, ", modulus) + peer.engine + ", " + peer.variant + number(", %g s", step);
-                print_row(head, one.subject, seconds,
-                          [&](Real offset) { return run(one, offset, seconds, peer, step, folder); });
+                print_row(head, test_case.subject, seconds,
+                          [&](Real offset) { return run(test_case, offset, seconds, peer, step, folder); });
             }
     }
 }

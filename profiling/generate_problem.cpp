@@ -120,8 +120,8 @@ std::vector<NamedContacts> generate_problems(bool quick) {
         {"patch-2888", {.nodes = 40}, true},
     };
     std::vector<NamedContacts> problems;
-    for (const Named& one : all)
-        if (!quick || !one.large) problems.push_back({one.name, generate_sheets(one.settings)});
+    for (const Named& named : all)
+        if (!quick || !named.large) problems.push_back({named.name, generate_sheets(named.settings)});
     return problems;
 }
 

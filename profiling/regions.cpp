@@ -103,8 +103,8 @@ void measure(Problem& problem, Team& team, const Traversal& traversal, const Sol
 }
 
 void print(const std::string& name, const Times& times, const Times& base) {
-    const auto ratio = [](const std::vector<double>& of, const std::vector<double>& to) {
-        return median(of) / median(to);
+    const auto ratio = [](const std::vector<double>& numerator, const std::vector<double>& denominator) {
+        return median(numerator) / median(denominator);
     };
     std::printf(
         "  %-20s sweep %8.4f ms (%.2f x), solve %8.3f ms in %2d sweeps (%.2f x), push %7.3f ms (%.2f x), order %.3f "

@@ -38,7 +38,7 @@ void profile_algorithm_1(const SeparationOptions& options, const std::vector<Ste
     csv << "problem,contacts,regions,areas,pairs_of_areas_that_share_a_node,seconds_separate,seconds_algorithm_1\n";
     std::fprintf(stderr, "\r\033[KAlgorithm 1, %zu steps", steps.size());
     for (const StepProblem& step : steps) compare(step.problem.name, step.lumped, csv);
-    for (const NamedContacts& one : generate_problems(true)) compare(one.name, one.contacts, csv);
+    for (const NamedContacts& named : generate_problems(true)) compare(named.name, named.contacts, csv);
 }
 
 }  // namespace skerry::profiling

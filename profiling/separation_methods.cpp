@@ -42,18 +42,18 @@ void profile_cone(const SeparationOptions& options, const std::vector<StepProble
     csv << "kind,problem,contacts,method,tolerance,cone_iterations,pyramid_iterations,cone_seconds,pyramid_seconds\n";
     const std::vector<Case> cases = gather_cases(steps, options.quick ? 3 : 20);
     std::fprintf(stderr, "\r\033[Kcone against pyramid, %zu problems", cases.size());
-    for (const Case& one : cases)
+    for (const Case& test_case : cases)
         for (const SolverMethod method : {SolverMethod::pgs, SolverMethod::pcg_pgs})
             for (const Real tolerance : {1e-3, 1e-6}) {
                 ProblemSettings settings{
                     .method = method, .friction = Friction::cone, .tolerance = tolerance, .max_iterations = 3000};
-                const ProblemSolution cone = solve_problem(one.problem, settings);
+                const ProblemSolution cone = solve_problem(test_case.problem, settings);
                 settings.friction = Friction::pyramid;
-                const ProblemSolution pyramid = solve_problem(one.problem, settings);
+                const ProblemSolution pyramid = solve_problem(test_case.problem, settings);
                 if (!cone.converged || !pyramid.converged || cone.iterations < 2) continue;  // nothing to compare
-                csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name_of(method)
-                    << ',' << tolerance << ',' << cone.iterations << ',' << pyramid.iterations << ',' << cone.seconds
-                    << ',' << pyramid.seconds << '\n';
+                csv << test_case.kind << ',' << test_case.problem.name << ',' << test_case.problem.contacts() << ','
+                    << name_of(method) << ',' << tolerance << ',' << cone.iterations << ',' << pyramid.iterations << ','
+                    << cone.seconds << ',' << pyramid.seconds << '\n';
             }
 }
 
@@ -62,19 +62,20 @@ void profile_poor_cases(const SeparationOptions& options, const std::vector<Step
     csv << "kind,problem,contacts,method,limit,error\n";
     const std::vector<Case> cases = gather_cases(steps, options.quick ? 5 : 50);
     std::fprintf(stderr, "\r\033[Kpoor cases, %zu problems", cases.size());
-    for (const Case& one : cases)
+    for (const Case& test_case : cases)
         for (const Index limit : {50, 200}) {
             ProblemSettings settings{.tolerance = 1e-6, .max_iterations = limit};
             const auto write = [&](std::string_view name, const ProblemSolution& solution) {
-                csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name << ','
-                    << limit << ',' << solution.error << '\n';
+                csv << test_case.kind << ',' << test_case.problem.name << ',' << test_case.problem.contacts() << ','
+                    << name << ',' << limit << ',' << solution.error << '\n';
             };
             for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
                 settings.method = method;
-                write(name, solve_problem(one.problem, settings));
+                write(name, solve_problem(test_case.problem, settings));
             }
             for (const auto& [method, name] : EnumNames<lab::Method>::table)
-                if (!lab::needs_frictionless(method)) write(name, lab::solve_problem(one.problem, method, settings));
+                if (!lab::needs_frictionless(method))
+                    write(name, lab::solve_problem(test_case.problem, method, settings));
         }
 }
 

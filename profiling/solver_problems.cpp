@@ -76,8 +76,8 @@ void step_problems(const std::string& scene_and_steps, const TakeProblem& take) 
 }
 
 void generated_problems(bool quick, const TakeProblem& take) {
-    for (const NamedContacts& one : generate_problems(quick))
-        take({"generated", assemble_problem(one.contacts, one.name), one.contacts});
+    for (const NamedContacts& named : generate_problems(quick))
+        take({"generated", assemble_problem(named.contacts, named.name), named.contacts});
 }
 
 }  // namespace skerry::profiling

@@ -105,10 +105,10 @@ struct Forms {
     std::optional<LumpedSolver> lumped;
 };
 
-Result solve_lumped(Forms& forms, const Contestant& who, Real tolerance, Index max_iterations) {
+Result solve_lumped(Forms& forms, const Contestant& contestant, Real tolerance, Index max_iterations) {
     SolverSettings settings{.warm_start = WarmStart::off, .tolerance = tolerance, .max_iterations = max_iterations};
-    const lab::Method* const of_lab = std::get_if<lab::Method>(&who.method);
-    if (of_lab == nullptr) settings.method = std::get<SolverMethod>(who.method);
+    const lab::Method* const of_lab = std::get_if<lab::Method>(&contestant.method);
+    if (of_lab == nullptr) settings.method = std::get<SolverMethod>(contestant.method);
     const double seconds = timed([&] { forms.lumped->reset(); },
                                  [&] {
                                      forms.lumped->separate();
@@ -124,19 +124,19 @@ Result solve_lumped(Forms& forms, const Contestant& who, Real tolerance, Index m
     return {seconds, forms.lumped->most_iterations(), problem_error(forms.blocks, reaction).relative, finished};
 }
 
-Result solve(Forms& forms, const Contestant& who, Real tolerance, Index max_iterations) {
-    if (who.owner == Owner::siconos) {
-        const SiconosSolution solution = forms.siconos.solve(who.variant, tolerance, max_iterations);
+Result solve(Forms& forms, const Contestant& contestant, Real tolerance, Index max_iterations) {
+    if (contestant.owner == Owner::siconos) {
+        const SiconosSolution solution = forms.siconos.solve(contestant.variant, tolerance, max_iterations);
         return {solution.seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative,
                 solution.finished};
     }
-    if (who.owner == Owner::skerry_lumped) return solve_lumped(forms, who, tolerance, max_iterations);
+    if (contestant.owner == Owner::skerry_lumped) return solve_lumped(forms, contestant, tolerance, max_iterations);
     ProblemSettings settings;
     settings.tolerance = tolerance;
     settings.max_iterations = max_iterations;
     const double start = cpu_seconds();
-    const lab::Method* const of_lab = std::get_if<lab::Method>(&who.method);
-    if (of_lab == nullptr) settings.method = std::get<SolverMethod>(who.method);
+    const lab::Method* const of_lab = std::get_if<lab::Method>(&contestant.method);
+    if (of_lab == nullptr) settings.method = std::get<SolverMethod>(contestant.method);
     const ProblemSolution solution =
         of_lab != nullptr ? lab::solve_problem(forms.blocks, *of_lab, settings) : solve_problem(forms.blocks, settings);
     const double cpu = cpu_seconds() - start;
@@ -145,8 +145,8 @@ Result solve(Forms& forms, const Contestant& who, Real tolerance, Index max_iter
     return {seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative, solution.converged};
 }
 
-bool leaves_friction_out(const Contestant& who) {
-    const lab::Method* const of_lab = std::get_if<lab::Method>(&who.method);
+bool leaves_friction_out(const Contestant& contestant) {
+    const lab::Method* const of_lab = std::get_if<lab::Method>(&contestant.method);
     return of_lab != nullptr && lab::needs_frictionless(*of_lab);
 }
 
@@ -157,18 +157,18 @@ struct Standing {
     bool out = false;          // excluded, for example since it missed a larger tolerance
 };
 
-Index iterations_within(Forms& forms, const Contestant& who, Real cap) {
-    const Result start = solve(forms, who, 1e-300, who.first_iterations);
+Index iterations_within(Forms& forms, const Contestant& contestant, Real cap) {
+    const Result start = solve(forms, contestant, 1e-300, contestant.first_iterations);
     const double each = start.seconds / std::max<Index>(1, start.iterations);
     return static_cast<Index>(std::clamp(cap / std::max(each, 1e-9), 10.0, 1e7));
 }
 
-Result solve_to(Forms& forms, const Contestant& who, Real tolerance, Standing& standing) {
-    Result result = solve(forms, who, standing.asked_less * tolerance, standing.max_iterations);
-    const int retries = who.owner == Owner::siconos ? 3 : who.owner == Owner::skerry_lumped ? 10 : 0;
+Result solve_to(Forms& forms, const Contestant& contestant, Real tolerance, Standing& standing) {
+    Result result = solve(forms, contestant, standing.asked_less * tolerance, standing.max_iterations);
+    const int retries = contestant.owner == Owner::siconos ? 3 : contestant.owner == Owner::skerry_lumped ? 10 : 0;
     for (int again = 0; again < retries && result.finished && result.error > tolerance; ++again) {
         standing.asked_less /= 4;
-        result = solve(forms, who, standing.asked_less * tolerance, standing.max_iterations);
+        result = solve(forms, contestant, standing.asked_less * tolerance, standing.max_iterations);
     }
     return result;
 }
@@ -251,16 +251,16 @@ void run(const Options& options) {
     std::optional<AssociatedTable> associated;
     if (!options.associated.empty()) associated.emplace(options.associated, options.tolerances, options.cap);
     csv << "problem,origin,contacts,owner,method,is_default,tolerance,seconds,iterations,error,converged,finished\n";
-    const TakeProblem one = [&](const SolverProblem& problem) {
+    const TakeProblem solve_one = [&](const SolverProblem& problem) {
         if (problem.problem.contacts() > options.most_contacts) return;
         std::fprintf(stderr, "\r\033[K%s, %d contacts", problem.problem.name.c_str(), problem.problem.contacts());
         profile_apart(problem, contestants, options, csv);
         if (associated) associated->add(problem.problem);
     };
-    read_problems(options.inputs, one);
+    read_problems(options.inputs, solve_one);
     if (!options.no_scenes)
-        for (const std::string& scene : options.scenes) step_problems(scene, one);
-    if (!options.no_generated) generated_problems(options.quick, one);
+        for (const std::string& scene : options.scenes) step_problems(scene, solve_one);
+    if (!options.no_generated) generated_problems(options.quick, solve_one);
     std::fprintf(stderr, "\r\033[K");
     std::printf("%s\n", options.csv.c_str());
 }

@@ -43,60 +43,62 @@ struct Outcome {
     std::string failed;
 };
 
-Settings settings_of(const Case& one, const Vec3& gravity) {
+Settings settings_of(const Case& test_case, const Vec3& gravity) {
     Settings settings;
     settings.backend = Backend::serial;
     settings.threads = 1;
     settings.gravity = gravity;
-    settings.step_size = one.step;
+    settings.step_size = test_case.step;
     settings.sleep = false;  // static bodies are compared more closely than the error of sleep, a thousandth
-    settings.tolerance = one.tolerance;
-    settings.method = one.method;
+    settings.tolerance = test_case.tolerance;
+    settings.method = test_case.method;
     return settings;
 }
-MaterialSettings stiff(const Case& one, Real friction) {
-    return {.young_modulus = one.modulus, .poisson_ratio = 0.3, .friction = friction};
+MaterialSettings stiff(const Case& test_case, Real friction) {
+    return {.young_modulus = test_case.modulus, .poisson_ratio = 0.3, .friction = friction};
 }
 
-void add_stack(World& world, const Case& one) {
-    const auto material = world.add_material(stiff(one, 0.5));
+void add_stack(World& world, const Case& test_case) {
+    const auto material = world.add_material(stiff(test_case, 0.5));
     world.add_collider(Plane{});
     const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
     for (int k = 0; k < 8; ++k)
-        world.add_body(block, {.material = material, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = one.dynamics});
+        world.add_body(block,
+                       {.material = material, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = test_case.dynamics});
 }
 
 /// Adds a ball with the given dynamics on a soft, explicit block.
-void add_ball_on_block(World& world, const Case& one) {
-    MaterialSettings heavy = stiff(one, 0.5);
+void add_ball_on_block(World& world, const Case& test_case) {
+    MaterialSettings heavy = stiff(test_case, 0.5);
     heavy.density = 8000;
     const auto steel = world.add_material(heavy);
     const auto soft = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .friction = 0.5});
     world.add_collider(Plane{});
     world.add_body(mesh::box({1, 1, 0.3}, {10, 10, 3}), {.material = soft, .position = {0, 0, 0.151}});
-    world.add_body(mesh::ball(0.1, 4), {.material = steel, .position = {0, 0, 0.701}, .dynamics = one.dynamics});
+    world.add_body(mesh::ball(0.1, 4), {.material = steel, .position = {0, 0, 0.701}, .dynamics = test_case.dynamics});
 }
 
-void add_pile(World& world, const Case& one) {
-    const auto material = world.add_material(stiff(one, 0.5));
+void add_pile(World& world, const Case& test_case) {
+    const auto material = world.add_material(stiff(test_case, 0.5));
     world.add_collider(Plane{});
     for (const Vec3& inward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
         world.add_collider(Plane{.normal = inward, .point = -0.22 * inward});
     for (const PiledCube& cube : piled_cubes())
-        world.add_body(
-            mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}),
-            {.material = material, .position = cube.position, .rotation = cube.rotation, .dynamics = one.dynamics});
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = material,
+                                                               .position = cube.position,
+                                                               .rotation = cube.rotation,
+                                                               .dynamics = test_case.dynamics});
 }
 
 /// Thirty soft, explicit boxes are let go just above one slab, in one region with it, or above a tile each, in thirty
 /// regions. Slab and tiles have the given dynamics.
 enum class Under { slab, tiles };
-void add_boxes(World& world, const Case& one, Under under) {
-    const auto material = world.add_material(stiff(one, 0.5));
+void add_boxes(World& world, const Case& test_case, Under under) {
+    const auto material = world.add_material(stiff(test_case, 0.5));
     const auto soft = world.add_material({.young_modulus = 2e5, .poisson_ratio = 0.3, .friction = 0.5});
     world.add_collider(Plane{});
     const auto add_under = [&](const Mesh& mesh, Real x, Real y) {
-        world.add_body(mesh, {.material = material, .position = {x, y, 0.05}, .dynamics = one.dynamics});
+        world.add_body(mesh, {.material = material, .position = {x, y, 0.05}, .dynamics = test_case.dynamics});
     };
     if (under == Under::slab) add_under(mesh::box({1.2, 1, 0.1}, {12, 10, 1}), 0, 0);
     const Mesh tile = mesh::box({0.18, 0.18, 0.1}, {2, 2, 1}), box = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
@@ -132,26 +134,27 @@ bool advance(World& world, Real seconds, double& cpu, Outcome& outcome) {
 
 /// Runs a block half a degree below the friction angle, which should not creep, and one two degrees above it, which
 /// should slide by Coulomb's law.
-Outcome run_incline(const Case& one) {
+Outcome run_incline(const Case& test_case) {
     constexpr Real mu = 0.3;
     const auto on_slope = [&](Real degrees, double& cpu, Outcome& outcome) {
         const Real a = std::atan(mu) + degrees * std::numbers::pi / 180;
-        World world(settings_of(one, g * Vec3(std::sin(a), 0, -std::cos(a))));
-        const auto material = world.add_material(stiff(one, mu));
+        World world(settings_of(test_case, g * Vec3(std::sin(a), 0, -std::cos(a))));
+        const auto material = world.add_material(stiff(test_case, mu));
         world.add_collider(Plane{});
-        const auto body = world.add_body(
-            mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}),
-            {.material = material, .position = {0, 0, 0.051}, .contact_distance = 1e-3, .dynamics = one.dynamics});
-        if (!advance(world, one.seconds, cpu, outcome)) return;
+        const auto body = world.add_body(mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), {.material = material,
+                                                                                 .position = {0, 0, 0.051},
+                                                                                 .contact_distance = 1e-3,
+                                                                                 .dynamics = test_case.dynamics});
+        if (!advance(world, test_case.seconds, cpu, outcome)) return;
         const Vec3 at = world.center_of_mass(body);
         const Real before = world.report().momentum.x() / world.mass(body);
-        if (!advance(world, one.seconds, cpu, outcome)) return;
+        if (!advance(world, test_case.seconds, cpu, outcome)) return;
         if (degrees < 0) {
-            outcome.creep = (world.center_of_mass(body) - at).norm() / one.seconds;
+            outcome.creep = (world.center_of_mass(body) - at).norm() / test_case.seconds;
             outcome.speed = rms_speed(world);
         } else {
             const Real law = g * (std::sin(a) - mu * std::cos(a));
-            const Real found = (world.report().momentum.x() / world.mass(body) - before) / one.seconds;
+            const Real found = (world.report().momentum.x() / world.mass(body) - before) / test_case.seconds;
             outcome.acceleration_error = found / law - 1;
         }
     };
@@ -159,35 +162,36 @@ Outcome run_incline(const Case& one) {
     double cpu = 0;
     on_slope(-0.5, cpu, outcome);
     on_slope(2, cpu, outcome);
-    outcome.cpu = cpu / (4 * one.seconds);
+    outcome.cpu = cpu / (4 * test_case.seconds);
     return outcome;
 }
 
-Outcome run(const Case& one) {
-    if (one.scene == "incline") return run_incline(one);
-    World world(settings_of(one, {0, 0, -g}));
-    if (one.scene == "stack") add_stack(world, one);
-    if (one.scene == "ball on block") add_ball_on_block(world, one);
-    if (one.scene == "pile") add_pile(world, one);
-    if (one.scene == "boxes on slab") add_boxes(world, one, Under::slab);
-    if (one.scene == "boxes on tiles") add_boxes(world, one, Under::tiles);
+Outcome run(const Case& test_case) {
+    if (test_case.scene == "incline") return run_incline(test_case);
+    World world(settings_of(test_case, {0, 0, -g}));
+    if (test_case.scene == "stack") add_stack(world, test_case);
+    if (test_case.scene == "ball on block") add_ball_on_block(world, test_case);
+    if (test_case.scene == "pile") add_pile(world, test_case);
+    if (test_case.scene == "boxes on slab") add_boxes(world, test_case, Under::slab);
+    if (test_case.scene == "boxes on tiles") add_boxes(world, test_case, Under::tiles);
     Outcome outcome;
     double cpu = 0;
-    advance(world, one.seconds, cpu, outcome);
-    outcome.cpu = cpu / one.seconds;
+    advance(world, test_case.seconds, cpu, outcome);
+    outcome.cpu = cpu / test_case.seconds;
     outcome.speed = rms_speed(world);
     return outcome;
 }
 
-void write(const Case& one, const Outcome& outcome, std::ofstream& table) {
-    table << one.scene << ',' << one.modulus << ',' << name_of(one.dynamics) << ',' << one.step << ',' << one.tolerance
-          << ',' << outcome.steps << ',' << outcome.cpu << ',' << outcome.speed << ',' << outcome.creep << ','
-          << outcome.acceleration_error << ',' << outcome.depth << ',' << outcome.unconverged << '\n'
+void write(const Case& test_case, const Outcome& outcome, std::ofstream& table) {
+    table << test_case.scene << ',' << test_case.modulus << ',' << name_of(test_case.dynamics) << ',' << test_case.step
+          << ',' << test_case.tolerance << ',' << outcome.steps << ',' << outcome.cpu << ',' << outcome.speed << ','
+          << outcome.creep << ',' << outcome.acceleration_error << ',' << outcome.depth << ',' << outcome.unconverged
+          << '\n'
           << std::flush;
-    std::printf("| %s | %.0e | %s | %g | %.0e | %.3f | %.1e | %.1e | %.2g | %.1e | %d |%s\n", one.scene.c_str(),
-                one.modulus, std::string(name_of(one.dynamics)).c_str(), 1000 * one.step, one.tolerance, outcome.cpu,
-                outcome.speed, outcome.creep, 100 * outcome.acceleration_error, 1000 * outcome.depth,
-                outcome.unconverged, outcome.failed.c_str());
+    std::printf("| %s | %.0e | %s | %g | %.0e | %.3f | %.1e | %.1e | %.2g | %.1e | %d |%s\n", test_case.scene.c_str(),
+                test_case.modulus, std::string(name_of(test_case.dynamics)).c_str(), 1000 * test_case.step,
+                test_case.tolerance, outcome.cpu, outcome.speed, outcome.creep, 100 * outcome.acceleration_error,
+                1000 * outcome.depth, outcome.unconverged, outcome.failed.c_str());
     std::fflush(stdout);
 }
 
@@ -224,14 +228,14 @@ int main(int argc, char** argv) {
                         // Stiffness has no effect on rigid bodies.
                         if (dynamics == BodyDynamics::rigid && modulus != 1e8) continue;
                         if (dynamics == BodyDynamics::explicit_elastic && (modulus > (quick ? 1e6 : 1e8))) continue;
-                        const Case one{scene,
-                                       modulus,
-                                       dynamics,
-                                       0.01,
-                                       tolerance,
-                                       quick ? 0.5 : 1,
-                                       sweeps ? SolverMethod::ags : SolverMethod::automatic};
-                        write(one, run(one), table);
+                        const Case test_case{scene,
+                                             modulus,
+                                             dynamics,
+                                             0.01,
+                                             tolerance,
+                                             quick ? 0.5 : 1,
+                                             sweeps ? SolverMethod::ags : SolverMethod::automatic};
+                        write(test_case, run(test_case), table);
                     }
         std::printf("%s\n", out.c_str());
     } catch (const std::exception& error) {

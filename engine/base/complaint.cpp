@@ -12,8 +12,8 @@ namespace skerry {
 
 std::string Complaint::text() const {
     std::string message;
-    for (const std::string* place : {&file, &object, &field})
-        if (!place->empty()) message += *place + ": ";
+    for (const std::string* part : {&file, &object, &field})
+        if (!part->empty()) message += *part + ": ";
     if (!found.empty()) message += "found " + found + (expected.empty() ? "" : ", ");
     if (!expected.empty()) message += "expected " + expected;
     if (!hint.empty()) message += " (" + hint + ")";
@@ -51,14 +51,15 @@ void require_finite(std::string_view object, std::string_view field, const Vec3&
     if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }
 
-SceneError error_at(const Complaint& place, const SceneError& inner) {
-    Complaint parts = inner.complaint();
-    if (parts.file.empty()) {
-        parts.file = place.file;
-        if (!place.object.empty()) parts.object = place.object;
-        parts.field = place.field + (place.field.empty() || parts.field.empty() ? "" : ": ") + parts.field;
+SceneError error_at(const Complaint& context, const SceneError& inner) {
+    Complaint complaint = inner.complaint();
+    if (complaint.file.empty()) {
+        complaint.file = context.file;
+        if (!context.object.empty()) complaint.object = context.object;
+        complaint.field =
+            context.field + (context.field.empty() || complaint.field.empty() ? "" : ": ") + complaint.field;
     }
-    return SceneError(place.text() + inner.what(), parts);
+    return SceneError(context.text() + inner.what(), complaint);
 }
 
 std::string short_text(Real value, int digits) {

@@ -11,13 +11,13 @@
 namespace skerry {
 namespace {
 
-std::string what(int error) {
+std::string system_message(int error) {
     return std::generic_category().message(error);
 }
 
-[[noreturn]] void complain(const std::filesystem::path& place, const std::string& found, const std::string& expected,
+[[noreturn]] void complain(const std::filesystem::path& path, const std::string& found, const std::string& expected,
                            const std::string& hint) {
-    refuse_in(place.string(), "output", {}, found, expected, hint);
+    refuse_in(path.string(), "output", {}, found, expected, hint);
 }
 
 std::string failure(const std::string& message) {
@@ -49,8 +49,8 @@ FileReplacement::Target target_of(const std::filesystem::path& file) {
     FileReplacement::Target target{file};
     constexpr int most_links = 40;
     for (int links = 0; links < most_links && fs::is_symlink(fs::symlink_status(target.path, error)); ++links) {
-        const fs::path to = fs::read_symlink(target.path, error);
-        target.path = to.is_absolute() ? to : target.path.parent_path() / to;
+        const fs::path link_target = fs::read_symlink(target.path, error);
+        target.path = link_target.is_absolute() ? link_target : target.path.parent_path() / link_target;
     }
     if (!fs::exists(found)) return target;
     // Renaming would also replace a write-protected file. Such a file is refused, because it was protected on purpose.
@@ -96,7 +96,8 @@ FileReplacement::FileReplacement(const std::filesystem::path& file) : file_(file
     errno = 0;
     stream_.open(part_, mode);
     if (!stream_)
-        complain(file, failure(what(errno)), "a file that can be written", "check the path and its permissions");
+        complain(file, failure(system_message(errno)), "a file that can be written",
+                 "check the path and its permissions");
 }
 
 FileReplacement::~FileReplacement() {
@@ -112,7 +113,7 @@ std::fstream& FileReplacement::seekable_stream() {
 
 void FileReplacement::require_written() {
     if (!stream_.flush())
-        complain(file_, failure(what(errno)) + " while writing", "enough space for the whole file",
+        complain(file_, failure(system_message(errno)) + " while writing", "enough space for the whole file",
                  "free disk space or choose another path");
 }
 

@@ -18,9 +18,9 @@ namespace {
 /// Errors of the meshes of all bodies, each at the sample with the largest elastic energy of the body.
 class MeshErrors {
 public:
-    /// Takes a sample of the bodies with the most elastic energy, at least of one. `share`: fraction of all tetrahedra
-    /// that are sampled. `last`: also samples sleeping bodies that were not sampled before.
-    void sample(const World& world, Real share, bool last) {
+    /// Takes a sample of the bodies with the most elastic energy, at least of one. `fraction`: fraction of all
+    /// tetrahedra that are sampled. `last`: also samples sleeping bodies that were not sampled before.
+    void sample(const World& world, Real fraction, bool last) {
         const Model& model = WorldAccess::state_of(world).model;
         struct Strained {
             BodyHandle body;
@@ -28,10 +28,10 @@ public:
             Real energy;
         };
         std::vector<Strained> strained;
-        Real left = 0;  // number of tetrahedra that may still be sampled
+        Real remaining_tetrahedra = 0;  // number of tetrahedra that may still be sampled
         for (const BodyHandle body : world.bodies()) {
             const auto row = static_cast<std::size_t>(model.row(body, "ErrorEstimator::sample"));
-            left += share * model.bodies.tetrahedron_count[row];
+            remaining_tetrahedra += fraction * model.bodies.tetrahedron_count[row];
             if (model.bodies.asleep[row] != 0 && !(last && !found_.contains(body))) continue;
             const ElementsOfBody elements(model, row);
             if (elements.blocks.size() > 0)
@@ -40,8 +40,8 @@ public:
         }
         std::ranges::stable_sort(strained, std::greater(), &Strained::energy);
         for (const auto& [body, row, energy] : strained) {
-            left -= model.bodies.tetrahedron_count[row];
-            if (left < 0 && body != strained.front().body) return;
+            remaining_tetrahedra -= model.bodies.tetrahedron_count[row];
+            if (remaining_tetrahedra < 0 && body != strained.front().body) return;
             add(measure_mesh_error(world, body), body, model.yields(row), world.time());
         }
     }

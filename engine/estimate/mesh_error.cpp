@@ -40,7 +40,7 @@ public:
         for (std::size_t t = 0; t < volume.size(); ++t)
             for (std::size_t corner = 0; corner < 4; ++corner) {
                 if (!nodes.extrapolated[static_cast<std::size_t>(record.tetrahedra[t][corner])]) continue;
-                Sum& sum = sums_[place(t, corner)];
+                Sum& sum = sums_[sum_index(t, corner)];
                 sum.stress += volume[t] * of_tetrahedra[t];
                 sum.volume += volume[t];
             }
@@ -51,13 +51,13 @@ public:
     Mat3 mean(std::size_t tetrahedron) const {
         Mat3 sum = Mat3::Zero();
         for (std::size_t corner = 0; corner < 4; ++corner)
-            sum += materials_.size() > 1 ? of(tetrahedron, corner) : nodes_.stress[node_at(tetrahedron, corner)];
+            sum += materials_.size() > 1 ? stress_at(tetrahedron, corner) : nodes_.stress[node_at(tetrahedron, corner)];
         return sum / 4;
     }
-    Mat3 of(std::size_t tetrahedron, std::size_t corner) const {
+    Mat3 stress_at(std::size_t tetrahedron, std::size_t corner) const {
         const std::size_t n = node_at(tetrahedron, corner);
         if (!nodes_.extrapolated[n]) return nodes_.stress[n];
-        const Sum& sum = sums_[place(tetrahedron, corner)];
+        const Sum& sum = sums_[sum_index(tetrahedron, corner)];
         return sum.stress / sum.volume;
     }
 
@@ -70,7 +70,7 @@ private:
     std::size_t node_at(std::size_t tetrahedron, std::size_t corner) const {
         return static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
     }
-    std::size_t place(std::size_t tetrahedron, std::size_t corner) const {
+    std::size_t sum_index(std::size_t tetrahedron, std::size_t corner) const {
         const std::size_t n = node_at(tetrahedron, corner);
         if (materials_.empty()) return n;
         const auto material = std::ranges::lower_bound(materials_, record_.tetrahedron_material[tetrahedron]);
@@ -120,7 +120,7 @@ public:
 private:
     void compare() {
         const std::size_t count = record_.tetrahedra.size();
-        for (std::vector<Real>* of : {&error_.volume, &error_.energy, &error_.error}) of->resize(count);
+        for (std::vector<Real>* column : {&error_.volume, &error_.energy, &error_.error}) column->resize(count);
         find_blocks(count);
         std::vector<Mat3> of_elements(static_cast<std::size_t>(body_.blocks.size()) * element_lanes);
         kernels().cauchy_stress(body_.elements, body_.blocks, body_.position, of_elements);
@@ -138,8 +138,8 @@ private:
         find_interpolation_error();
         find_errors_of_nodes();
     }
-    std::size_t block_at(std::size_t place) const {
-        return static_cast<std::size_t>(body_.blocks.begin) + place / element_lanes;
+    std::size_t block_at(std::size_t element) const {
+        return static_cast<std::size_t>(body_.blocks.begin) + element / element_lanes;
     }
     const MaterialConstants& constants_of(std::size_t block) const {
         return body_.elements.constants[static_cast<std::size_t>(body_.elements.material[block])];
@@ -151,12 +151,12 @@ private:
     void find_blocks(std::size_t tetrahedron_count) {
         block_.resize(tetrahedron_count);
         splits_.resize(norms_.size());
-        for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {
-            const std::size_t block = block_at(place);
+        for (std::size_t element = 0; element < body_.cover.tetrahedra.size(); ++element) {
+            const std::size_t block = block_at(element);
             const ElementPart part = body_.elements.part[block];
             if (part == ElementPart::volume) splits_[static_cast<std::size_t>(body_.elements.material[block])] = true;
             if (part == ElementPart::volume || part == ElementPart::guard) continue;
-            for (const Index t : body_.cover.tetrahedra[place]) block_[static_cast<std::size_t>(t)] = block;
+            for (const Index t : body_.cover.tetrahedra[element]) block_[static_cast<std::size_t>(t)] = block;
         }
     }
 
@@ -179,32 +179,32 @@ private:
         };
         // by tetrahedron: mean stresses of its elements, [1] of those with volumetric stress only, [0] of the others
         std::array<std::vector<Mean>, 2> means;
-        for (std::vector<Mean>& of : means) of.resize(error_.volume.size());
+        for (std::vector<Mean>& list : means) list.resize(error_.volume.size());
         Real stiffness = 0;
-        for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {
-            const std::span<const Index> covered = body_.cover.tetrahedra[place];
+        for (std::size_t element = 0; element < body_.cover.tetrahedra.size(); ++element) {
+            const std::span<const Index> covered = body_.cover.tetrahedra[element];
             if (covered.empty()) continue;
-            const std::size_t block = block_at(place);
+            const std::size_t block = block_at(element);
             const ElementPart part = body_.elements.part[block];
             const Mat3 turn = is_anisotropic(block) ? turn_of(gradient_of(static_cast<std::size_t>(covered.front())))
                                                     : Mat3(Mat3::Identity());
-            const StressCoordinates coordinates = norm_of(block).of(stress[place], part, turn);
-            const Real volume = body_.elements.volume[block][place % element_lanes];
+            const StressCoordinates coordinates = norm_of(block).of(stress[element], part, turn);
+            const Real volume = body_.elements.volume[block][element % element_lanes];
             error_.stored += volume * coordinates.squaredNorm();
             stiffness += volume * constants_of(block).shear_modulus;
             for (const Index t : covered) {
-                Mean& of = means[part == ElementPart::volume ? 1 : 0][static_cast<std::size_t>(t)];
-                of.sum += coordinates;
-                ++of.count;
+                Mean& mean = means[part == ElementPart::volume ? 1 : 0][static_cast<std::size_t>(t)];
+                mean.sum += coordinates;
+                ++mean.count;
             }
         }
         if (error_.stored < smallest_strain * smallest_strain * stiffness) {
             error_.stored = 0;
             return false;
         }
-        for (const std::vector<Mean>& of : means)
-            for (std::size_t t = 0; t < of.size(); ++t)
-                if (of[t].count > 0) error_.stored -= error_.volume[t] * (of[t].sum / of[t].count).squaredNorm();
+        for (const std::vector<Mean>& list : means)
+            for (std::size_t t = 0; t < list.size(); ++t)
+                if (list[t].count > 0) error_.stored -= error_.volume[t] * (list[t].sum / list[t].count).squaredNorm();
         return true;
     }
 
@@ -239,7 +239,7 @@ private:
         Real error = 0, energy = 0;
         StressCoordinates total = StressCoordinates::Zero();
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            const StressCoordinates at = coordinates(recovered.of(t, corner));
+            const StressCoordinates at = coordinates(recovered.stress_at(t, corner));
             error += (at - own).squaredNorm();
             energy += at.squaredNorm();
             total += at;

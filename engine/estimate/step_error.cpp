@@ -206,14 +206,14 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
     const Real error = start_error + motion.deflected + motion.tumbled;
-    const Vec3 sudden = now.velocity - motion.velocity;
+    const Vec3 velocity_change = now.velocity - motion.velocity;
     if (interval.collided.contains(body))
-        motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+        motion.deflection_rate += velocity_change.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
     // Restitution reverses the velocity at the end of a step instead of at the time of impact, on average half a step
     // late. Each rebound adds this delay times the change of the velocity without the part of gravity.
     if (interval.rebounds) {
-        const Real kick = (sudden - interval.seconds * world.settings().gravity).norm();
-        motion.deflected += std::min(sudden.norm(), kick) * interval.step / 2;
+        const Real rebound = (velocity_change - interval.seconds * world.settings().gravity).norm();
+        motion.deflected += std::min(velocity_change.norm(), rebound) * interval.step / 2;
     }
     motion.velocity = now.velocity;
     motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
@@ -275,8 +275,8 @@ void StepError::go_on(const World& world, BodyHandle body, const Interval& inter
 void StepError::sample(const World& world) {
     const std::uint64_t steps = WorldAccess::state_of(world).record.counters.steps;
     const std::map<BodyHandle, AttachmentHandle> holders = holders_of(world);
-    const auto taken = static_cast<Real>(steps - steps_);
-    Interval interval{world.time() - time_, (world.time() - time_) / taken, {}, has_restitution(world)};
+    const auto steps_taken = static_cast<Real>(steps - steps_);
+    Interval interval{world.time() - time_, (world.time() - time_) / steps_taken, {}, has_restitution(world)};
     std::set<BodyHandle> touching = touching_bodies(world);
     std::ranges::set_symmetric_difference(touching, touching_,
                                           std::inserter(interval.collided, interval.collided.end()));
@@ -289,7 +289,7 @@ void StepError::sample(const World& world) {
         if (motion == motions_.end() || motion->second.holder != held ||
             motion->second.deformation.displacement.empty() != (world.dynamics(body) == BodyDynamics::rigid))
             motions_.insert_or_assign(body, begin(world, body, held));
-        else if (taken > 0 && !world.asleep(body))
+        else if (steps_taken > 0 && !world.asleep(body))
             go_on(world, body, interval, motion->second);
     }
     time_ = world.time();
@@ -300,10 +300,11 @@ void StepError::add_to(std::vector<ErrorEstimate>& bodies) const {
     for (ErrorEstimate& estimate : bodies) {
         const auto motion = motions_.find(estimate.body);
         if (motion == motions_.end()) continue;
-        const Motion& of = motion->second;
-        if (!(of.moved > of.still)) continue;
-        estimate.step = std::min(Real{1}, of.error / of.moved);
-        if (!of.deformation.displacement.empty()) estimate.deformation = std::min(Real{1}, of.largest / of.moved);
+        const Motion& found = motion->second;
+        if (!(found.moved > found.still)) continue;
+        estimate.step = std::min(Real{1}, found.error / found.moved);
+        if (!found.deformation.displacement.empty())
+            estimate.deformation = std::min(Real{1}, found.largest / found.moved);
     }
 }
 

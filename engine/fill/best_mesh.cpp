@@ -37,18 +37,19 @@ void append_region(const Mesh& region, std::vector<Index> node_of, int label, Me
 }
 
 /// Fills each region of the surface. Neighbouring regions share the nodes of the shell that separates them.
-MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherSetup& setup, const std::string& which) {
+MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherSetup& setup,
+                          const std::string& surface_name) {
     MesherResult all{.mesh = Mesh{.nodes = shells.nodes, .tetrahedra = {}}};
     for (std::size_t s = 0; s < shells.shell.size(); ++s) {
         if (shells.shell[s].cavity) continue;
-        std::vector<Index> kept;
-        const SurfaceMesh boundary = without_unused_nodes(boundary_of_region(shells, s), &kept);
-        MesherResult region = fill_by_netgen(boundary, largest_edge, setup, "filling " + which + " by Netgen");
+        std::vector<Index> boundary_nodes;
+        const SurfaceMesh boundary = without_unused_nodes(boundary_of_region(shells, s), &boundary_nodes);
+        MesherResult region = fill_by_netgen(boundary, largest_edge, setup, "filling " + surface_name + " by Netgen");
         if (!region.mesh) return region;
         const Real volume = volume_inside(boundary), filled = inspect(*region.mesh).volume;
         if (std::abs(filled - volume) > volume_rounding * volume)
             return {.failure = "filled a different volume than the surface contains"};
-        append_region(*region.mesh, std::move(kept), shells.shell[s].label, *all.mesh);
+        append_region(*region.mesh, std::move(boundary_nodes), shells.shell[s].label, *all.mesh);
     }
     if (!shells.has_regions()) all.mesh->label.clear();
     return all;
@@ -56,11 +57,11 @@ MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherS
 
 /// Fills the surface once for each of the sizes `largest_edges`, and replaces `best` by an acceptable mesh with a
 /// longer stable step. The finest size is tried only if no coarser mesh was acceptable.
-void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMeshTask& task, BestMesh& best) {
+void try_fill(const SurfaceMesh& surface, const std::string& surface_name, const BestMeshTask& task, BestMesh& best) {
     const Shells shells = shells_of(check_surface(surface, no_weld), task.all_cavities);
     for (const Real size : largest_edges) {
         if (size < 1 && best.step > 0) return;
-        MesherResult filled = fill_regions(shells, size * task.edge, task.setup, which);
+        MesherResult filled = fill_regions(shells, size * task.edge, task.setup, surface_name);
         if (!filled.mesh) {
             best.failure = "Netgen " + filled.failure;
             best.missing = filled.missing;
@@ -85,11 +86,11 @@ void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMe
 /// only. If a full check then finds a distance above `tolerance`, thin_knots runs again with a smaller tolerance.
 ThinnedSurface thinned_within_tolerance(const SurfaceMesh& surface, Real tolerance) {
     constexpr int tries = 4;
-    constexpr Real less = 0.75;
-    Real smaller = tolerance;
-    for (int i = 0; i < tries; ++i, smaller *= less) {
+    constexpr Real reduction = 0.75;
+    Real reduced = tolerance;
+    for (int i = 0; i < tries; ++i, reduced *= reduction) {
         ThinnedSurface thinned =
-            thin_knots(surface, {.tolerance = smaller, .altitude = knot_altitude * mean_edge(surface)});
+            thin_knots(surface, {.tolerance = reduced, .altitude = knot_altitude * mean_edge(surface)});
         if (surface_distance(surface, thinned.surface).greatest() <= tolerance) return thinned;
     }
     return {};
@@ -104,13 +105,13 @@ BestMesh best_mesh(const BestMeshTask& task) {
     if (task.setup.progress) task.setup.progress("removing very flat triangles from the surface");
     const ThinnedSurface thinned = thinned_within_tolerance(task.surface, task.tolerance);
     if (thinned.collapsed + thinned.flipped == 0) return best;
-    BestMesh other;
-    try_fill(thinned.surface, "the surface without very flat triangles", task, other);
-    best.may_change = other.may_change = best.may_change || other.may_change;
-    if (!(other.step > least_gain * best.step)) return best;
-    other.collapsed = thinned.collapsed;
-    other.flipped = thinned.flipped;
-    return other;
+    BestMesh thinned_best;
+    try_fill(thinned.surface, "the surface without very flat triangles", task, thinned_best);
+    best.may_change = thinned_best.may_change = best.may_change || thinned_best.may_change;
+    if (!(thinned_best.step > least_gain * best.step)) return best;
+    thinned_best.collapsed = thinned.collapsed;
+    thinned_best.flipped = thinned.flipped;
+    return thinned_best;
 }
 
 }  // namespace skerry::mesh

@@ -5,17 +5,17 @@
 
 namespace skerry {
 
-ExplicitBody explicit_body(const Mesh& mesh, const StepCase& of) {
-    Settings settings = of.settings;
+ExplicitBody explicit_body(const Mesh& mesh, const BodyCase& body_case) {
+    Settings settings = body_case.settings;
     settings.step_size.reset();
     settings.clusters = false;
     settings.backend = Backend::serial;
     World world(settings);
-    BodySettings body = of.body;
+    BodySettings body = body_case.body;
     body.dynamics = BodyDynamics::explicit_elastic;
-    body.material = world.add_material(of.material);
+    body.material = world.add_material(body_case.material);
     body.materials.clear();
-    for (const auto& [label, material] : of.labelled)
+    for (const auto& [label, material] : body_case.labelled)
         if (std::ranges::find(mesh.label, label) != mesh.label.end())
             body.materials.emplace(label, world.add_material(material));
     const BodyHandle handle = world.add_body(mesh, body);

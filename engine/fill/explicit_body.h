@@ -9,7 +9,7 @@ namespace skerry {
 
 /// All data on which the stable step of a single body depends, apart from the mesh. By default the body has the default
 /// material and elements. The body is explicit; `body.dynamics` is ignored.
-struct StepCase {
+struct BodyCase {
     Settings settings{};
     MaterialSettings material{};
     BodySettings body{};
@@ -23,6 +23,6 @@ struct ExplicitBody {
 
 /// Adds a body to a new world without clusters, so that its stable step is the step of the elements alone. Throws
 /// SceneError if the mesh cannot be a body.
-ExplicitBody explicit_body(const Mesh& mesh, const StepCase& of);
+ExplicitBody explicit_body(const Mesh& mesh, const BodyCase& body_case);
 
 }  // namespace skerry

@@ -76,8 +76,8 @@ std::string netgen_program() {
     return {};
 }
 
-std::string python_program(const std::string& given) {
-    if (!given.empty()) return given;
+std::string python_program(const std::string& setting) {
+    if (!setting.empty()) return setting;
     const std::string named = value_of("SKERRY_FILL_PYTHON");
     return named.empty() ? "python3" : named;
 }

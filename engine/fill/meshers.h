@@ -21,9 +21,9 @@ std::string netgen_program();
 /// Explains how to install Netgen.
 extern const char* const install_netgen;
 
-/// Command that starts the Python interpreter with the package wildmeshing: `given`, the value of FillSettings::python,
-/// if it is not empty, else the environment variable SKERRY_FILL_PYTHON, else python3.
-std::string python_program(const std::string& given);
+/// Command that starts the Python interpreter with the package wildmeshing: `setting`, the value of
+/// FillSettings::python, if it is not empty, else the environment variable SKERRY_FILL_PYTHON, else python3.
+std::string python_program(const std::string& setting);
 
 /// Fills a closed manifold surface that does not cross itself. The edges of the tetrahedra are at most about
 /// `largest_edge` long [m]. The nodes of the surface are the first nodes of the mesh, unchanged to the last bit.

@@ -19,22 +19,22 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
-void turn(std::vector<Triangle>& triangles) {
+void reverse(std::vector<Triangle>& triangles) {
     for (Triangle& t : triangles) std::swap(t[1], t[2]);
 }
 
 /// True if a shell contains a point: if its winding number at the point is above 1/2. With holes in the shell this
 /// number is not an integer.
 bool surrounds(const Shell& shell, const std::vector<Vec3>& nodes, const Vec3& point) {
-    const auto seen = [&](Index n) -> Vec3 { return nodes[static_cast<std::size_t>(n)] - point; };
+    const auto from_point = [&](Index n) -> Vec3 { return nodes[static_cast<std::size_t>(n)] - point; };
     Real sum = 0;
-    for (const auto& [a, b, c] : shell.triangles) sum += half_solid_angle(seen(a), seen(b), seen(c));
+    for (const auto& [a, b, c] : shell.triangles) sum += half_solid_angle(from_point(a), from_point(b), from_point(c));
     return sum / (2 * std::numbers::pi) > 0.5;
 }
 
-void append(std::vector<Triangle>& to, std::vector<Triangle> triangles, bool turned) {
-    if (turned) turn(triangles);
-    to.insert(to.end(), triangles.begin(), triangles.end());
+void append(std::vector<Triangle>& target, std::vector<Triangle> triangles, bool reversed) {
+    if (reversed) reverse(triangles);
+    target.insert(target.end(), triangles.begin(), triangles.end());
 }
 
 }  // namespace
@@ -52,25 +52,26 @@ Shells shells_of(const SurfaceReport& report, bool all_cavities) {
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, std::ranges::greater(),
                              [&](std::size_t s) { return std::abs(report.shells[s].volume); });
-    std::vector<std::size_t> place(order.size());
-    for (std::size_t s = 0; s < order.size(); ++s) place[order[s]] = s;
+    std::vector<std::size_t> sorted_row(order.size());
+    for (std::size_t s = 0; s < order.size(); ++s) sorted_row[order[s]] = s;
     Shells shells{report.cleaned.nodes, std::vector<Shell>(order.size())};
     for (std::size_t t = 0; t < report.shell.size(); ++t)
-        shells.shell[place[static_cast<std::size_t>(report.shell[t])]].triangles.push_back(report.cleaned.triangles[t]);
+        shells.shell[sorted_row[static_cast<std::size_t>(report.shell[t])]].triangles.push_back(
+            report.cleaned.triangles[t]);
     std::vector<std::size_t> depth(order.size(), 0);
     int label = 0;
     for (std::size_t s = 0; s < order.size(); ++s) {
-        const SurfaceShell& given = report.shells[order[s]];
+        const SurfaceShell& reported = report.shells[order[s]];
         Shell& shell = shells.shell[s];
-        if (given.volume < 0) turn(shell.triangles);
-        shell.volume = std::abs(given.volume);
-        shell.first_triangle = given.triangle;
-        if (given.around != no_index) {
-            const std::size_t around = place[static_cast<std::size_t>(given.around)];
+        if (reported.volume < 0) reverse(shell.triangles);
+        shell.volume = std::abs(reported.volume);
+        shell.first_triangle = reported.triangle;
+        if (reported.around != no_index) {
+            const std::size_t around = sorted_row[static_cast<std::size_t>(reported.around)];
             shell.parent = static_cast<Index>(around);
             depth[s] = depth[around] + 1;
         }
-        shell.cavity = depth[s] % 2 == 1 && (all_cavities || given.volume < 0);
+        shell.cavity = depth[s] % 2 == 1 && (all_cavities || reported.volume < 0);
         if (!shell.cavity) shell.label = ++label;
     }
     return shells;
@@ -89,11 +90,11 @@ SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell) {
     return surface;
 }
 
-SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept) {
+SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept_nodes) {
     SurfaceMesh compact{{}, surface.triangles};
     UsedNodes used = drop_unused(surface.nodes, compact.triangles);
     compact.nodes = std::move(used.nodes);
-    if (kept) *kept = std::move(used.number);
+    if (kept_nodes) *kept_nodes = std::move(used.number);
     return compact;
 }
 

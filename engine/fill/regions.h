@@ -43,9 +43,9 @@ SurfaceMesh whole_surface(const Shells& shells);
 /// directly inside it.
 SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell);
 
-/// The surface without the nodes that no triangle uses. `kept`, if given, gets the index in `surface` of each remaining
-/// node.
-SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept = nullptr);
+/// The surface without the nodes that no triangle uses. `kept_nodes`, if given, gets the index in `surface` of each
+/// remaining node.
+SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept_nodes = nullptr);
 
 /// Labels each tetrahedron by the smallest shell of a region around its centroid.
 void label_regions(Mesh& mesh, const Shells& shells);

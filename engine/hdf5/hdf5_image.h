@@ -31,7 +31,7 @@ public:
 
 private:
     void put(const std::string& path, hid_t type, const Hdf5Handle& space, const void* values);
-    void expect(bool good, const std::string& path) const;
+    void expect(bool ok, const std::string& path) const;
 
     QuietHdf5 quiet_;
     std::string name_;

@@ -104,9 +104,9 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
 
 std::vector<LiveCommand> LiveHub::take_commands() {
     const std::lock_guard lock(mutex_);
-    std::vector<LiveCommand> taken = std::exchange(commands_, {});
+    std::vector<LiveCommand> commands = std::exchange(commands_, {});
     note_busy();
-    return taken;
+    return commands;
 }
 
 void LiveHub::begin_run(const LiveRunInfo& info, const LiveState& state) {
@@ -165,8 +165,8 @@ LiveHub::Wish LiveHub::wish() {
 std::shared_ptr<Snapshot> LiveHub::free_snapshot() {
     const std::lock_guard lock(mutex_);
     const auto is_free = [](const std::shared_ptr<Snapshot>& snapshot) { return snapshot.use_count() == 1; };
-    const auto place = std::ranges::find_if(snapshots_, is_free);
-    return place != snapshots_.end() ? *place : snapshots_.emplace_back(std::make_shared<Snapshot>());
+    const auto free_snapshot = std::ranges::find_if(snapshots_, is_free);
+    return free_snapshot != snapshots_.end() ? *free_snapshot : snapshots_.emplace_back(std::make_shared<Snapshot>());
 }
 
 void LiveHub::publish(std::shared_ptr<Snapshot> snapshot) {
@@ -201,8 +201,8 @@ int LiveHub::clients() const {
 }
 
 LiveHub::Client* LiveHub::find(std::uint64_t number) {
-    const auto place = std::ranges::find(clients_, number, &Client::number);
-    return place == clients_.end() ? nullptr : &*place;
+    const auto found = std::ranges::find(clients_, number, &Client::number);
+    return found == clients_.end() ? nullptr : &*found;
 }
 
 /// Appends a message. Drops a browser with `most_waiting` messages, so that messages to a hanging browser do not pile

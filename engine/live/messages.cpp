@@ -89,9 +89,9 @@ Real LiveEncoder::usual() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;
     const Real rank = std::ceil(0.99 * static_cast<Real>(values_.size() - 1));
-    const auto place = values_.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::ranges::nth_element(values_, place);
-    return *place;
+    const auto position = values_.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::ranges::nth_element(values_, position);
+    return *position;
 }
 
 Real LiveEncoder::usual(std::size_t field) {

@@ -35,15 +35,15 @@ RawMesh read_file(const std::string& path, bool surface) {
     const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
     const auto* const format = std::ranges::find(formats, extension, &Format::extension);
-    const bool known = format != formats.end();
-    if (!known || (format->surface_only && !surface)) {
+    const bool is_known = format != formats.end();
+    if (!is_known || (format->surface_only && !surface)) {
         std::string expected = "the extension ";
         for (const Format& other : formats)
             if (surface || !other.surface_only) expected += std::string(other.extension) + ", ";
         refuse_in(
             path, {}, "file name", extension.empty() ? "no extension" : "the extension " + extension,
             expected + ".node or .ele",
-            known
+            is_known
                 ? "a body that deforms needs tetrahedra: write \"surface\" instead of \"file\" in a scene, or fill the "
                   "surface with `skerry fill`; a rigid body or a collider needs only a surface"
                 : "export the mesh in one of these formats");
@@ -126,9 +126,9 @@ void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* n
 /// mesh are dropped, with a note.
 void take_sets(const std::string& path, std::map<std::string, MeshSet>& raw, std::span<const Index> used,
                std::size_t raw_nodes, Mesh& mesh, std::vector<std::string>* notes) {
-    std::vector<Index> place(raw_nodes, no_index);
-    for (std::size_t n = 0; n < used.size(); ++n) place[static_cast<std::size_t>(used[n])] = static_cast<Index>(n);
-    const auto renumber = [&](Index& n) { n = place[static_cast<std::size_t>(n)]; };
+    std::vector<Index> new_index(raw_nodes, no_index);
+    for (std::size_t n = 0; n < used.size(); ++n) new_index[static_cast<std::size_t>(used[n])] = static_cast<Index>(n);
+    const auto renumber = [&](Index& n) { n = new_index[static_cast<std::size_t>(n)]; };
     std::size_t dropped = 0;
     for (auto& [name, set] : raw) {
         std::ranges::for_each(set.nodes, renumber);

@@ -23,8 +23,8 @@ constexpr std::array<FaceOfTetrahedron, 4> faces_of_tetrahedron{
     {{{0, 1, 2}, {0, 1, 2}}, {{0, 1, 3}, {0, 4, 3}}, {{1, 2, 3}, {1, 5, 4}}, {{2, 0, 3}, {2, 3, 5}}}};
 
 template <std::size_t N>
-std::array<Index, 3> picked(const std::array<Index, N>& from, const std::array<std::size_t, 3>& position) {
-    return {from[position[0]], from[position[1]], from[position[2]]};
+std::array<Index, 3> picked(const std::array<Index, N>& corners, const std::array<std::size_t, 3>& position) {
+    return {corners[position[0]], corners[position[1]], corners[position[2]]};
 }
 
 /// Collects the edge midpoints that are added to a set of nodes in a refinement, so that the set covers the same faces

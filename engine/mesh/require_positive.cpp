@@ -5,9 +5,9 @@
 
 namespace skerry::mesh {
 
-void require_positive(const Mesh& mesh, const std::string& what) {
-    if (mesh.tetrahedra.empty()) refuse_in(what, "mesh", {}, "no tetrahedra", "at least one tetrahedron");
-    require_valid(mesh, what);
+void require_positive(const Mesh& mesh, const std::string& name) {
+    if (mesh.tetrahedra.empty()) refuse_in(name, "mesh", {}, "no tetrahedra", "at least one tetrahedron");
+    require_valid(mesh, name);
     std::size_t inverted = 0, flat = 0, first = mesh.tetrahedra.size();
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
         const Orientation side = orientation(mesh, mesh.tetrahedra[e]);
@@ -20,7 +20,7 @@ void require_positive(const Mesh& mesh, const std::string& what) {
     const std::array<Index, 4>& t = mesh.tetrahedra[first];
     std::string nodes;
     for (const Index node : t) nodes += " " + std::to_string(node);
-    refuse_in(what, "tetrahedron " + std::to_string(first) + " (nodes" + nodes + ")", "rest volume",
+    refuse_in(name, "tetrahedron " + std::to_string(first) + " (nodes" + nodes + ")", "rest volume",
               short_text(six_volumes(mesh, t) / 6, 6) + " m^3", "a positive volume",
               "inverted: " + std::to_string(inverted) + ", flat: " + std::to_string(flat) + " of " +
                   std::to_string(mesh.tetrahedra.size()) +

@@ -57,21 +57,21 @@ Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedro
     return volume > 0 ? Orientation::positive : Orientation::inverted;
 }
 
-void require_valid(const Mesh& mesh, const std::string& what) {
+void require_valid(const Mesh& mesh, const std::string& name) {
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
-            refuse_in(what, "node " + std::to_string(n), "position", "a coordinate that is not finite",
+            refuse_in(name, "node " + std::to_string(n), "position", "a coordinate that is not finite",
                       "finite coordinates (m)");
     const auto node_count = static_cast<Index>(std::min<std::size_t>(mesh.nodes.size(), 0x7fffffff));
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
         const std::array<Index, 4>& t = mesh.tetrahedra[e];
         for (std::size_t a = 0; a < 4; ++a) {
             if (t[a] < 0 || t[a] >= node_count)
-                refuse_in(what, "tetrahedron " + std::to_string(e), "node", std::to_string(t[a]),
+                refuse_in(name, "tetrahedron " + std::to_string(e), "node", std::to_string(t[a]),
                           "a node index from 0 to " + std::to_string(node_count - 1));
             if (std::find(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(a), t[a]) !=
                 t.begin() + static_cast<std::ptrdiff_t>(a))
-                refuse_in(what, "tetrahedron " + std::to_string(e), "node", std::to_string(t[a]) + " twice",
+                refuse_in(name, "tetrahedron " + std::to_string(e), "node", std::to_string(t[a]) + " twice",
                           "four different nodes");
         }
     }

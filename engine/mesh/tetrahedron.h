@@ -24,7 +24,7 @@ enum class Orientation { positive, flat, inverted };
 Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
 /// Throws SceneError unless every tetrahedron has four different existing nodes and every node is finite. The message
-/// contains `what`, the name of the file or the body.
-void require_valid(const Mesh& mesh, const std::string& what);
+/// contains `name`, the name of the file or the body.
+void require_valid(const Mesh& mesh, const std::string& name);
 
 }  // namespace skerry::mesh

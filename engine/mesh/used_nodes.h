@@ -19,18 +19,18 @@ struct UsedNodes {
 /// in order.
 template <std::size_t N>
 UsedNodes drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
-    std::vector<Index> place(nodes.size(), no_index);
+    std::vector<Index> new_index(nodes.size(), no_index);
     for (const std::array<Index, N>& row : rows)
-        for (const Index n : row) place[static_cast<std::size_t>(n)] = 0;
+        for (const Index n : row) new_index[static_cast<std::size_t>(n)] = 0;
     UsedNodes used;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        if (place[n] == no_index) continue;
-        place[n] = static_cast<Index>(used.nodes.size());
+        if (new_index[n] == no_index) continue;
+        new_index[n] = static_cast<Index>(used.nodes.size());
         used.nodes.push_back(nodes[n]);
         used.number.push_back(static_cast<Index>(n));
     }
     for (std::array<Index, N>& row : rows)
-        for (Index& n : row) n = place[static_cast<std::size_t>(n)];
+        for (Index& n : row) n = new_index[static_cast<std::size_t>(n)];
     return used;
 }
 

@@ -50,13 +50,13 @@ std::vector<LineFrame> collect_lines(const World& world) {
     const WorldState& state = WorldAccess::state_of(world);
     const Model& model = state.model;
     std::vector<LineFrame> lines;
-    const auto add = [&]<class HandleType>(LineKind kind, HandleType, auto&& put) {
+    const auto add = [&]<class HandleType>(LineKind kind, HandleType, auto&& put_points_of) {
         for (const HandleType handle : handles_of<HandleType>(model)) {
             lines.push_back({.kind = kind,
                              .slot = handle.slot,
                              .generation = handle.generation,
                              .name = object_name(model, handle)});
-            put(handle, lines.back());
+            put_points_of(handle, lines.back());
         }
     };
     add(LineKind::joint, JointHandle{}, [&](JointHandle joint, LineFrame& line) {

@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-inline std::string percent(double share) {
-    return short_text(100 * share) + " %";
+inline std::string percent(double fraction) {
+    return short_text(100 * fraction) + " %";
 }
 
 /// Formats a count with its digits in groups of three, for example 1,234,567.

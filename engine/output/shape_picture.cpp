@@ -18,13 +18,13 @@ constexpr int plane_cells = 10;  // number of grid cells per edge of the display
 // points (radius, z) of a curve along which the outside of the shape lies on the right
 using Profile = std::vector<std::array<Real, 2>>;
 
-/// Adds a circular arc with centre (0, z) to a profile. The angles `from` and `to` are measured from the horizontal,
+/// Adds a circular arc with centre (0, z) to a profile. The angles `start` and `end` are measured from the horizontal,
 /// upwards [rad].
-void add_arc(Profile& profile, Real radius, Real z, Real from, Real to) {
-    const int steps = static_cast<int>(std::lround(std::abs(to - from) / (std::numbers::pi / 2) * arc_steps));
+void add_arc(Profile& profile, Real radius, Real z, Real start, Real end) {
+    const int steps = static_cast<int>(std::lround(std::abs(end - start) / (std::numbers::pi / 2) * arc_steps));
     for (int i = 0; i <= steps; ++i) {
-        const Real angle = from + (to - from) * i / steps;
-        const bool pole = i == 0 ? from == -std::numbers::pi / 2 : i == steps && to == std::numbers::pi / 2;
+        const Real angle = start + (end - start) * i / steps;
+        const bool pole = i == 0 ? start == -std::numbers::pi / 2 : i == steps && end == std::numbers::pi / 2;
         profile.push_back({pole ? 0 : radius * std::cos(angle), z + radius * std::sin(angle)});
     }
 }

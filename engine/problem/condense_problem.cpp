@@ -51,9 +51,9 @@ SparseMatrix assemble(const MassParts& parts, Index part, const std::vector<Matr
     return mass;
 }
 
-std::string freedom_text(const MassParts& parts, Index part, Index place) {
+std::string freedom_text(const MassParts& parts, Index part, Index row) {
     for (std::size_t i = 0; i < parts.part.size(); ++i)
-        if (parts.part[i] == part && parts.place[i] == place) return "degree of freedom " + std::to_string(i);
+        if (parts.part[i] == part && parts.place[i] == row) return "degree of freedom " + std::to_string(i);
     return {};
 }
 

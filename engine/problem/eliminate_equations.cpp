@@ -32,10 +32,10 @@ struct VelocityRow {
     std::vector<OnFrame> frames;  // coefficients of the rigid motion of rigid and implicit bodies
 
     void add_frame(Index frame, const Vec3& along, const Vec3& turn) {
-        for (OnFrame& of : frames)
-            if (of.frame == frame) {
-                of.along += along;
-                of.turn += turn;
+        for (OnFrame& term : frames)
+            if (term.frame == frame) {
+                term.along += along;
+                term.turn += turn;
                 return;
             }
         frames.push_back({frame, along, turn});
@@ -91,7 +91,7 @@ public:
             // the weights, so the arm is added only with the first node of the body in the stencil.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
-                std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& of) { return of.frame == frame; });
+                std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& term) { return term.frame == frame; });
             const Vec3 beside = frame != no_index && is_first && weight != 0
                                     ? inputs_.rigid.nodes.beside_core(node, weight, c, inputs_.normal[c], inputs_.touch)
                                     : Vec3(Vec3::Zero());
@@ -116,13 +116,13 @@ public:
     /// Calls visit(leader) for each node and frame of a row. The leader is a node that represents all nodes whose
     /// masses are coupled with each other: those of a cluster, or of a rigid or implicit body.
     void for_each_leader(const VelocityRow& row, auto&& visit) const {
-        for (const auto& of : row.frames) visit(leader_of_frame(of.frame));
-        for (const auto& of : row.nodes) visit(leader_of_node(of.node));
+        for (const auto& term : row.frames) visit(leader_of_frame(term.frame));
+        for (const auto& term : row.nodes) visit(leader_of_node(term.node));
     }
     /// The first leader of a row; no_index if the row moves nothing.
     Index leader(const VelocityRow& row) const {
         Index first = no_index;
-        for_each_leader(row, [&](Index of) { first = first == no_index ? of : first; });
+        for_each_leader(row, [&](Index found) { first = first == no_index ? found : first; });
         return first;
     }
 
@@ -182,7 +182,7 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
         if (const Real c = block.mimic.coefficient; c != 0) {
             VelocityRow row = row_of_joint(block, inputs, c * block.frame.col(2));
             if (block.mimic.leads) {  // rows.back() is the row of the joint that mimics this one
-                for (const auto& of : row.frames) rows.back().row.add_frame(of.frame, of.along, of.turn);
+                for (const auto& term : row.frames) rows.back().row.add_frame(term.frame, term.along, term.turn);
                 continue;
             }
             rows.push_back({std::move(row), Keeps::velocity, impulse.z() / c});
@@ -225,9 +225,9 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
     for (Index k = 0; k < 3; ++k) {
         VelocityRow sum;
         for (Index p = block.points.begin; p < block.points.end; ++p) {
-            const VelocityRow of = mobilities.of_stencil(cables.stencil[p], Vec3::Unit(k), block.acting_point(p));
-            sum.nodes.insert(sum.nodes.end(), of.nodes.begin(), of.nodes.end());
-            for (const auto& frame : of.frames) sum.add_frame(frame.frame, frame.along, frame.turn);
+            const VelocityRow row = mobilities.of_stencil(cables.stencil[p], Vec3::Unit(k), block.acting_point(p));
+            sum.nodes.insert(sum.nodes.end(), row.nodes.begin(), row.nodes.end());
+            for (const auto& frame : row.frames) sum.add_frame(frame.frame, frame.along, frame.turn);
         }
         rows.push_back({std::move(sum), Keeps::velocity, cables.impulse[block.points.begin + k]});
     }
@@ -249,13 +249,13 @@ constexpr Real immovable_part = 1e-6;
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
     if (matrix.rows() == 0) return matrix;
     const Eigen::VectorXd scale =
-        matrix.diagonal().unaryExpr([](Real of) { return of > 0 ? 1 / std::sqrt(of) : Real(0); });
+        matrix.diagonal().unaryExpr([](Real value) { return value > 0 ? 1 / std::sqrt(value) : Real(0); });
     const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
     // The size is given, because Eigen does not resize here (EIGEN_NO_AUTOMATIC_RESIZING).
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> factors(matrix.rows());
     factors.compute(scaled);
-    const Eigen::VectorXd roots =
-        factors.eigenvalues().unaryExpr([](Real of) { return of > negligible_part ? 1 / std::sqrt(of) : Real(0); });
+    const Eigen::VectorXd roots = factors.eigenvalues().unaryExpr(
+        [](Real value) { return value > negligible_part ? 1 / std::sqrt(value) : Real(0); });
     const Eigen::MatrixXd half = scale.asDiagonal() * factors.eigenvectors() * roots.asDiagonal();
     return half * half.transpose();
 }
@@ -327,16 +327,17 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
         rows.push_back({mobilities.of_stencil({{held.node, held.node, held.node, held.node}, {1, 0, 0, 0}},
                                               held.direction, nullptr),
                         Keeps::held, 0});
-    std::erase_if(rows, [&](const EquationRow& of) { return mobilities.leader(of.row) == no_index; });
+    std::erase_if(rows, [&](const EquationRow& equation) { return mobilities.leader(equation.row) == no_index; });
     if (rows.empty()) return {};
     UnionFind sets;
     sets.start(inputs.inverse_mass.size());
-    for (const EquationRow& of : rows)
-        mobilities.for_each_leader(of.row, [&](Index leader) { sets.join(mobilities.leader(of.row), leader); });
+    for (const EquationRow& equation : rows)
+        mobilities.for_each_leader(equation.row,
+                                   [&](Index leader) { sets.join(mobilities.leader(equation.row), leader); });
     std::map<Index, Group> groups;  // indexed by the root of the set in `sets`
-    for (EquationRow& of : rows) {
-        Group& group = groups[sets.root(mobilities.leader(of.row))];
-        (of.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&of);
+    for (EquationRow& equation : rows) {
+        Group& group = groups[sets.root(mobilities.leader(equation.row))];
+        (equation.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);
     }
     std::vector<std::array<VelocityRow, 3>> of_contact;
     for (std::size_t i = 0; i < contact.size(); ++i) {
@@ -370,7 +371,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
             r.segment<3>(3 * static_cast<Index>(i)) = impulse[at];
         }
         const Eigen::MatrixXd C = couplings(mobilities, contacts, group.kept_velocity),
-                              known = couplings(mobilities, contacts, group.kept_impulse);
+                              impulse_couplings = couplings(mobilities, contacts, group.kept_impulse);
         const std::vector<VelocityRow> of_equations = rows_of_equations(group.kept_velocity);
         const Eigen::MatrixXd E = couplings(mobilities, of_equations, group.kept_velocity);
         const Eigen::VectorXd known_impulses = impulses_of(group.kept_impulse);
@@ -378,14 +379,16 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
                            C.transpose() * r + couplings(mobilities, of_equations, group.kept_impulse) * known_impulses,
                            group.kept_velocity);
         const Eigen::MatrixXd product = C * (inverse_of(E) * C.transpose());
-        const Eigen::MatrixXd less = (product + product.transpose()) / 2;  // symmetric to the last bit, as W must be
-        const Eigen::VectorXd more = known * known_impulses + C * impulses_of(group.kept_velocity) + less * r;
+        const Eigen::MatrixXd reduction =
+            (product + product.transpose()) / 2;  // symmetric to the last bit, as W must be
+        const Eigen::VectorXd velocity_shift =
+            impulse_couplings * known_impulses + C * impulses_of(group.kept_velocity) + reduction * r;
         for (std::size_t i = 0; i < group.contacts.size(); ++i) {
             const auto row = static_cast<Index>(3 * i);
-            problem.q[static_cast<std::size_t>(group.contacts[i])] += more.segment<3>(row);
+            problem.q[static_cast<std::size_t>(group.contacts[i])] += velocity_shift.segment<3>(row);
             for (std::size_t j = 0; j < group.contacts.size(); ++j) {
                 const auto column = static_cast<Index>(3 * j);
-                parts.push_back({group.contacts[i], group.contacts[j], -less.block<3, 3>(row, column)});
+                parts.push_back({group.contacts[i], group.contacts[j], -reduction.block<3, 3>(row, column)});
             }
         }
     }

@@ -53,9 +53,9 @@ void read_triplets(const Hdf5File& file, const std::string& group, Index nz, Mat
 }  // namespace
 
 void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
-                 const std::string& of) {
+                 const std::string& meaning) {
     if (found != expected)
-        file.complain(path, std::to_string(found) + " values", std::to_string(expected) + " (" + of + ")");
+        file.complain(path, std::to_string(found) + " values", std::to_string(expected) + " (" + meaning + ")");
 }
 
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group) {

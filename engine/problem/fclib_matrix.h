@@ -29,9 +29,9 @@ MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group);
 /// Throws SceneError.
 MatrixEntries read_matrix(const Hdf5File& file, const std::string& group);
 
-/// Throws SceneError unless the number `found` equals the number `expected`. `of` explains the expected number in the
-/// message, for example "rows of W".
+/// Throws SceneError unless the number `found` equals the number `expected`. `meaning` explains the expected number in
+/// the message, for example "rows of W".
 void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
-                 const std::string& of);
+                 const std::string& meaning);
 
 }  // namespace skerry

@@ -9,14 +9,14 @@ namespace skerry {
 
 ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts) {
     check_arrays(problem);
-    std::vector<Index> place(problem.q.size(), no_index);
+    std::vector<Index> row_in_part(problem.q.size(), no_index);
     Index previous = -1;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (contacts[i] <= previous || contacts[i] >= problem.contacts())
             refuse(title_of(problem), "contacts", std::to_string(contacts[i]),
                    "contact indices from 0 to " + std::to_string(problem.contacts() - 1) + " in ascending order");
         previous = contacts[i];
-        place[contacts[i]] = static_cast<Index>(i);
+        row_in_part[contacts[i]] = static_cast<Index>(i);
     }
     ContactProblem part;
     part.name = problem.name;
@@ -26,7 +26,7 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
         part.q.push_back(problem.q[i]);
         part.mu.push_back(problem.mu[i]);
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
-            if (const Index column = place[problem.column[k]]; column != no_index) {
+            if (const Index column = row_in_part[problem.column[k]]; column != no_index) {
                 part.column.push_back(column);
                 part.block.push_back(problem.block[k]);
             }

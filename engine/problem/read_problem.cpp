@@ -29,17 +29,18 @@ std::vector<BlockPart> blocks_of(std::vector<MatrixEntry> entries) {
     return parts;
 }
 
-std::vector<Vec3> read_vectors3(const Hdf5File& file, const std::string& path, Index size, const char* of) {
+std::vector<Vec3> read_vectors3(const Hdf5File& file, const std::string& path, Index size, const char* size_meaning) {
     const std::vector<Real> value = file.reals(path);
-    expect_size(file, path, value.size(), static_cast<std::size_t>(size), of);
+    expect_size(file, path, value.size(), static_cast<std::size_t>(size), size_meaning);
     std::vector<Vec3> result;
     for (std::size_t i = 0; i < value.size(); i += 3) result.emplace_back(value[i], value[i + 1], value[i + 2]);
     return result;
 }
 
-std::vector<Real> read_friction(const Hdf5File& file, const std::string& path, Index contacts, const char* of) {
+std::vector<Real> read_friction(const Hdf5File& file, const std::string& path, Index contacts,
+                                const char* size_meaning) {
     std::vector<Real> mu = file.reals(path);
-    expect_size(file, path, mu.size(), static_cast<std::size_t>(contacts), of);
+    expect_size(file, path, mu.size(), static_cast<std::size_t>(contacts), size_meaning);
     const auto negative = std::find_if(mu.begin(), mu.end(), [](Real value) { return value < 0; });
     if (negative != mu.end()) file.complain(path, short_text(*negative), "friction coefficients >= 0");
     return mu;

@@ -112,11 +112,11 @@ std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
 }
 
 /// Erases the contacts with the given numbers from a problem. `contacts`: ascending numbers.
-void leave_out(std::span<const Index> contacts, StepProblem& problem) {
+void erase_contacts(std::span<const Index> contacts, StepProblem& problem) {
     std::vector<Index> kept;
     for (Index i = 0; i < problem.problem.contacts(); ++i)
         if (!std::ranges::binary_search(contacts, i)) kept.push_back(i);
-    const auto keep = [&]<class T>(std::vector<T>& values) {
+    const auto erase_others = [&]<class T>(std::vector<T>& values) {
         if (values.empty()) return;
         for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[static_cast<std::size_t>(kept[i])];
         values.resize(kept.size());
@@ -126,15 +126,15 @@ void leave_out(std::span<const Index> contacts, StepProblem& problem) {
     else
         problem.problem = part_of(problem.problem, kept);
     LumpedContacts& lumped = problem.lumped;
-    keep(lumped.node);
-    keep(lumped.weight);
-    keep(lumped.normal);
-    keep(lumped.offset);
-    keep(lumped.friction);
-    for (RigidPoints& body : lumped.rigid) keep(body.touch);
-    keep(problem.impulse);
-    keep(problem.contact);
-    keep(problem.region);
+    erase_others(lumped.node);
+    erase_others(lumped.weight);
+    erase_others(lumped.normal);
+    erase_others(lumped.offset);
+    erase_others(lumped.friction);
+    for (RigidPoints& body : lumped.rigid) erase_others(body.touch);
+    erase_others(problem.impulse);
+    erase_others(problem.contact);
+    erase_others(problem.region);
 }
 
 }  // namespace
@@ -178,7 +178,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     result.impulse = in_contact_frames(lumped, impulse);
     if (const std::optional<std::vector<Index>> immovable =
             eliminate_equations(step.equations, step.contacts, result.contact, result.impulse, result.problem)) {
-        if (!immovable->empty()) leave_out(*immovable, result);
+        if (!immovable->empty()) erase_contacts(*immovable, result);
         result.problem.description +=
             "; W and q include the joints, ties and rollers of the bodies, and the impulses of their motors, limits, "
             "slides and cables in the step";

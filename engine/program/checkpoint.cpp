@@ -35,8 +35,8 @@ bool same_slots(const std::vector<HandleType>& a, const std::vector<HandleType>&
     });
 }
 
-std::string counted(std::size_t count, const char* what) {
-    return std::to_string(count) + " " + what;
+std::string counted(std::size_t count, const char* noun) {
+    return std::to_string(count) + " " + noun;
 }
 
 /// Sets the world number in all handles of a probe. The handles then refer to the same objects of the world with this
@@ -44,20 +44,20 @@ std::string counted(std::size_t count, const char* what) {
 void rename_world(RecordedProbe& probe, std::uint32_t number) {
     const auto rename = [number](auto& handle) { handle.world = number; };
     std::visit(
-        [&](auto& what) {
-            if constexpr (requires { what.body; }) rename(what.body);
-            if constexpr (requires { what.collider; }) rename(what.collider);
-            if constexpr (requires { what.attachment; }) rename(what.attachment);
-            if constexpr (requires { what.joint; }) rename(what.joint);
-            if constexpr (requires { what.tie; }) rename(what.tie);
-            if constexpr (requires { what.cable; }) rename(what.cable);
-            if constexpr (requires { what.cavity; }) rename(what.cavity);
-            if constexpr (requires { what.spring; }) rename(what.spring);
-            if constexpr (requires { what.object; }) std::visit(rename, what.object);
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(what)>, BodyForceProbe>) {
-                if (what.by) std::visit(rename, *what.by);
-            } else if constexpr (requires { what.by; }) {
-                if (what.by) rename(*what.by);
+        [&](auto& object) {
+            if constexpr (requires { object.body; }) rename(object.body);
+            if constexpr (requires { object.collider; }) rename(object.collider);
+            if constexpr (requires { object.attachment; }) rename(object.attachment);
+            if constexpr (requires { object.joint; }) rename(object.joint);
+            if constexpr (requires { object.tie; }) rename(object.tie);
+            if constexpr (requires { object.cable; }) rename(object.cable);
+            if constexpr (requires { object.cavity; }) rename(object.cavity);
+            if constexpr (requires { object.spring; }) rename(object.spring);
+            if constexpr (requires { object.object; }) std::visit(rename, object.object);
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(object)>, BodyForceProbe>) {
+                if (object.by) std::visit(rename, *object.by);
+            } else if constexpr (requires { object.by; }) {
+                if (object.by) rename(*object.by);
             }
         },
         probe.what);

@@ -55,32 +55,34 @@ std::string stage_table(const RunResult& result) {
 /// Returns one line for each cause that limited the length of at least 1 % of the steps. The setting step_size does not
 /// count as a cause.
 std::string limit_lines(const WorldReport& r) {
-    const auto why = [](const StepLimitReport& of) -> std::string {
-        switch (of.limit) {
+    const auto cause = [](const StepLimitReport& limit_report) -> std::string {
+        switch (limit_report.limit) {
             case StepLimit::setting:
                 return "step_size";
             case StepLimit::rest:
-                return "the stable step of " + of.body_name + " at rest";
+                return "the stable step of " + limit_report.body_name + " at rest";
             case StepLimit::strain:
-                return "the stable step of " + of.body_name + " in its deformed shape";
+                return "the stable step of " + limit_report.body_name + " in its deformed shape";
             case StepLimit::speed:
-                return "fast deformation or rotation of " + of.body_name;
+                return "fast deformation or rotation of " + limit_report.body_name;
             case StepLimit::inversion:
-                return "elements of " + of.body_name + " that would turn inside out";
+                return "elements of " + limit_report.body_name + " that would turn inside out";
             case StepLimit::crossing:
                 return "surfaces that would cross";
         }
         return {};
     };
     std::string text;
-    for (const StepLimitReport& of : r.step_limits) {
-        const double share = static_cast<double>(of.steps) / static_cast<double>(std::max<std::uint64_t>(r.steps, 1));
-        if (share < 0.01 || of.limit == StepLimit::setting) continue;
-        text += summary_line(text.empty() ? "step limits" : "",
-                             percent(share) + " of the steps, " +
-                                 with_unit(of.seconds / static_cast<double>(of.steps), "s") +
-                                 " long on average, limited by " + why(of) +
-                                 (of.tries > 0 ? " (" + grouped(of.tries) + " discarded attempts)" : ""));
+    for (const StepLimitReport& limit_report : r.step_limits) {
+        const double fraction =
+            static_cast<double>(limit_report.steps) / static_cast<double>(std::max<std::uint64_t>(r.steps, 1));
+        if (fraction < 0.01 || limit_report.limit == StepLimit::setting) continue;
+        text += summary_line(
+            text.empty() ? "step limits" : "",
+            percent(fraction) + " of the steps, " +
+                with_unit(limit_report.seconds / static_cast<double>(limit_report.steps), "s") +
+                " long on average, limited by " + cause(limit_report) +
+                (limit_report.tries > 0 ? " (" + grouped(limit_report.tries) + " discarded attempts)" : ""));
     }
     return text;
 }

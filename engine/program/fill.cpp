@@ -132,9 +132,9 @@ int fill(const FillOptions& options) {
     const double seconds = watch.seconds();
     const MeshReport report = inspect(filled.mesh);
     Problems problems = problems_of(report);
-    StepCase of;
-    of.material = settings.material;
-    add_thin_part(filled.mesh, mesh::boundary(filled.mesh).triangles, of, problems);
+    BodyCase body_case;
+    body_case.material = settings.material;
+    add_thin_part(filled.mesh, mesh::boundary(filled.mesh).triangles, body_case, problems);
     mesh::write(options.mesh.string(), filled.mesh);
     if (!options.scene.empty())
         write_file(options.scene, [&](std::ostream& out) {

@@ -91,8 +91,8 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, World* built = nul
                              {.step = infinity, .element = {}, .worst = {}, .without = {}}});
             if (kinds.back().sets_step())
                 kinds.back().bound = built == nullptr
-                                         ? step_bound(mesh_of_body, step_case(plan, body), false)
-                                         : step_bound(*built, handles[b], mesh_of_body, step_case(plan, body));
+                                         ? step_bound(mesh_of_body, body_case_of(plan, body), false)
+                                         : step_bound(*built, handles[b], mesh_of_body, body_case_of(plan, body));
         }
         ++kinds[at->second].count;
     }
@@ -158,7 +158,7 @@ Problems problems_of(const ScenePlan& plan, const std::vector<BodyKindReport>& k
         Problems of_kind = problems_of(kind.mesh);
         if (kind.dynamics != BodyDynamics::rigid)
             add_thin_part(plan.meshes[plan.bodies[kind.body].mesh], world.surface(bodies[kind.body]),
-                          step_case(plan, plan.bodies[kind.body]), of_kind);
+                          body_case_of(plan, plan.bodies[kind.body]), of_kind);
         for (const std::string& problem : of_kind)
             problems.push_back(mesh_of_body_text(plan, kind.body) + ": " + problem);
     }
@@ -221,8 +221,8 @@ int inspect_scene(const InspectOptions& options) {
     if (!options.repair.empty()) {
         const BodyPlan& body = body_to_mend(plan, options);
         return inspect_repair({.mesh = plan.meshes[body.mesh],
-                               .what = options.file.string() + ": body \"" + body.settings.name + "\"",
-                               .of = step_case(plan, body),
+                               .name = options.file.string() + ": body \"" + body.settings.name + "\"",
+                               .body_case = body_case_of(plan, body),
                                .step_of = "material \"" + plan.materials[body.material].first + "\"",
                                .scaled = true},
                               options);
@@ -337,8 +337,8 @@ int inspect_scene(const InspectOptions& options) {
               << "), " << count_text(cost.steps) << " steps for " << short_text(scene.seconds) << " s\n"
               << "  cost          about " << duration_text(cost.seconds) << " of wall time for the whole run, "
               << duration_text(cost.seconds / scene.seconds) << " per simulated second, "
-              << (cost.whole ? "measured in a trial of the whole run"
-                             : "estimated from a trial of the first " + short_text(cost.simulated) + " s")
+              << (cost.complete ? "measured in a trial of the whole run"
+                                : "estimated from a trial of the first " + short_text(cost.simulated) + " s")
               << "\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";

@@ -35,9 +35,10 @@ std::string compared(Real ratio) {
 
 }  // namespace
 
-void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
+void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const BodyCase& body_case,
                    Problems& problems) {
-    if (std::string text = thin_part_text(mesh, boundary, of); !text.empty()) problems.push_back(std::move(text));
+    if (std::string text = thin_part_text(mesh, boundary, body_case); !text.empty())
+        problems.push_back(std::move(text));
 }
 
 void print_notes(const std::vector<std::string>& notes) {
@@ -85,8 +86,8 @@ namespace {
 int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vector<std::string>& notes) {
     if (!options.repair.empty())
         return inspect_repair({.mesh = mesh,
-                               .what = options.file.string(),
-                               .of = {},
+                               .name = options.file.string(),
+                               .body_case = {},
                                .step_of = "the default material, 1e5 Pa and 1000 kg/m^3",
                                .scaled = false},
                               options);

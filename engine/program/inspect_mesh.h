@@ -15,8 +15,8 @@
 namespace skerry {
 
 /// Adds a problem if a thin part of the mesh is too stiff in bending, or if elements lock. `boundary`: boundary
-/// triangles of the mesh. `of`: materials and elements of the body.
-void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
+/// triangles of the mesh. `body_case`: materials and elements of the body.
+void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const BodyCase& body_case,
                    Problems& problems);
 void print_notes(const std::vector<std::string>& notes);
 void print_problems(const Problems& problems);

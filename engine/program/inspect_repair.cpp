@@ -46,7 +46,7 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
     const auto count_row = [](const char* name, std::size_t before, std::size_t after) {
         print_row(name, grouped(before), grouped(after), change(static_cast<Real>(before), static_cast<Real>(after)));
     };
-    std::printf("%s\n", task.what.c_str());
+    std::printf("%s\n", task.name.c_str());
     print_row("", "before", "after");
     count_row("nodes", a.mesh.nodes, b.mesh.nodes);
     count_row("tetrahedra", a.mesh.tetrahedra, b.mesh.tetrahedra);
@@ -66,7 +66,8 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
                     (grouped(repaired.parted) + (repaired.parted == 1 ? " node" : " nodes")).c_str());
     if (!a.mesh.sets.empty() && b.mesh.sets.empty())
         std::printf("  the new mesh has none of the sets of the mesh, because its nodes have other numbers\n");
-    if (!repaired.kept.empty()) std::printf("  the tetrahedra are unchanged: %s\n", repaired.kept.c_str());
+    if (!repaired.reason_unchanged.empty())
+        std::printf("  the tetrahedra are unchanged: %s\n", repaired.reason_unchanged.c_str());
     if (repaired.collapsed + repaired.flipped == 0) {
         std::printf("  the surface is unchanged\n");
         return;
@@ -80,7 +81,7 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
 
 void print_json(const RepairedMesh& repaired, const RepairTask& task, const InspectOptions& options) {
     const Json json = object_of({{"schema", "skerry.mesh_repair/1"},
-                                 {"mesh", task.what},
+                                 {"mesh", task.name},
                                  {"output", options.repair.string()},
                                  {"written", repaired.refusal.empty()},
                                  {"refusal", repaired.refusal},
@@ -89,7 +90,7 @@ void print_json(const RepairedMesh& repaired, const RepairTask& task, const Insp
                                  {"edges_collapsed", repaired.collapsed},
                                  {"edges_flipped", repaired.flipped},
                                  {"nodes_parted", repaired.parted},
-                                 {"kept", repaired.kept},
+                                 {"kept", repaired.reason_unchanged},
                                  {"tolerance", repaired.tolerance},
                                  {"distance", object_of({{"old_from_new", repaired.distance.from_first},
                                                          {"new_from_old", repaired.distance.from_second}})}});
@@ -121,13 +122,13 @@ int inspect_repair(const RepairTask& task, const InspectOptions& options) {
     RepairedMesh repaired;
     {
         ActivityLine line(!options.json);
-        repaired = repair(task.mesh, task.what, task.of, options.tolerance,
+        repaired = repair(task.mesh, task.name, task.body_case, options.tolerance,
                           [&](const std::string& doing) { line.show(doing); });
         if (repaired.refusal.empty()) mesh::write(options.repair.string(), repaired.mesh);
     }
     if (options.json) print_json(repaired, task, options);
     if (!repaired.refusal.empty()) {
-        std::cerr << "skerry: " << task.what << ": " << repaired.refusal << "; nothing was written\n";
+        std::cerr << "skerry: " << task.name << ": " << repaired.refusal << "; nothing was written\n";
         return exit_failed;
     }
     if (options.json) return exit_ok;

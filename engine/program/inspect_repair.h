@@ -9,8 +9,8 @@ namespace skerry {
 /// A mesh to repair, and the properties of the body for which the stable step is computed.
 struct RepairTask {
     const Mesh& mesh;
-    std::string what;  // name of the mesh in messages: the mesh file, or the scene and the body
-    StepCase of;
+    std::string name;  // name of the mesh in messages: the mesh file, or the scene and the body
+    BodyCase body_case;
     std::string step_of;  // description of the material for which the stable step is computed
     // true if the scene scales the mesh: the repaired file contains scaled nodes, so `scale` must be removed from the
     // scene

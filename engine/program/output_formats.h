@@ -14,7 +14,7 @@ namespace skerry {
 
 /// Data from which a Writer is constructed. The objects that it refers to outlive the writer.
 struct OutputRequest {
-    std::filesystem::path place;
+    std::filesystem::path path;
     const Scene& scene;
     const RunOptions& options;
     // Result of the run. When a writer is closed, only the entries of writers that are closed later are missing here.

@@ -85,12 +85,14 @@ void warn_of_sag(const ScenePlan& plan, const BodyPlan& body, Real height, std::
 Real volume_of(const Mesh& mesh) {
     Real six_volumes = 0;
     const Vec3& origin = mesh.nodes.front();
-    const auto edge = [&](Index n, const Vec3& from) -> Vec3 { return mesh.nodes[static_cast<std::size_t>(n)] - from; };
+    const auto from_point = [&](Index n, const Vec3& start) -> Vec3 {
+        return mesh.nodes[static_cast<std::size_t>(n)] - start;
+    };
     for (const auto& t : mesh.triangles)
-        six_volumes += edge(t[0], origin).dot(edge(t[1], origin).cross(edge(t[2], origin)));
+        six_volumes += from_point(t[0], origin).dot(from_point(t[1], origin).cross(from_point(t[2], origin)));
     for (const auto& t : mesh.tetrahedra) {
         const Vec3& corner = mesh.nodes[static_cast<std::size_t>(t[0])];
-        six_volumes += edge(t[1], corner).dot(edge(t[2], corner).cross(edge(t[3], corner)));
+        six_volumes += from_point(t[1], corner).dot(from_point(t[2], corner).cross(from_point(t[3], corner)));
     }
     return six_volumes / 6;
 }
@@ -99,25 +101,25 @@ Real volume_of(const Mesh& mesh) {
 void warn_of_rigid(const BodySettings& body, const Mesh& mesh, const Extent& extent,
                    std::vector<std::string>& warnings) {
     if (body.dynamics != BodyDynamics::rigid || mesh.nodes.empty()) return;
-    const std::string who = "body \"" + body.name + "\"";
+    const std::string body_text = "body \"" + body.name + "\"";
     if (!mesh.triangles.empty() && extent.size > most_surface_size)
-        warnings.push_back(who + " is " + with_unit(extent.size, "m") +
+        warnings.push_back(body_text + " is " + with_unit(extent.size, "m") +
                            " long: is its surface in m? STL files have no units; for a file in millimetres set "
                            "\"scale\": 0.001 in \"mesh\"");
     if (!body.mass) return;
     const Real density = *body.mass / volume_of(mesh), diagonal = extent.edges.norm();
     if (density > most_density || density < least_given_density)
-        warnings.push_back(who + " has a mass of " + short_text(*body.mass) + " kg and a mean density of " +
+        warnings.push_back(body_text + " has a mass of " + short_text(*body.mass) + " kg and a mean density of " +
                            short_text(density, 2) + " kg/m^3: is \"mass\" in kg, and the mesh in m?");
     if (!body.inertia || !body.center_of_mass) return;
     const Real radius = std::sqrt(body.inertia->diagonal().maxCoeff() / *body.mass);
     if (radius > diagonal)
-        warnings.push_back(who + " has a radius of gyration of " + with_unit(radius, "m") +
+        warnings.push_back(body_text + " has a radius of gyration of " + with_unit(radius, "m") +
                            ", more than the diagonal of its bounding box of " + with_unit(diagonal, "m") +
                            ": is \"inertia\" in kg m^2, and \"mass\" in kg?");
     const Vec3 outside = (*body.center_of_mass - extent.center).cwiseAbs() - extent.edges / 2;
     if (outside.maxCoeff() > diagonal)
-        warnings.push_back(who + " has its centre of mass " + with_unit(outside.maxCoeff(), "m") +
+        warnings.push_back(body_text + " has its centre of mass " + with_unit(outside.maxCoeff(), "m") +
                            " outside its bounding box: is \"center_of_mass\" in m, and in the frame of the mesh?");
 }
 
@@ -125,21 +127,21 @@ void warn_of_sizes(const ScenePlan& plan, const std::vector<Extent>& extents, st
     const auto by_size = [](const Extent& a, const Extent& b) { return a.size < b.size; };
     const auto [least, most] = std::ranges::minmax_element(extents, by_size);
     if (least == extents.end() || !(least->size > 0) || !(most->size > most_size_ratio * least->size)) return;
-    const auto name = [&](auto place) {
-        return "body \"" + plan.bodies[static_cast<std::size_t>(place - extents.begin())].settings.name + "\"";
+    const auto body_text = [&](auto extent) {
+        return "body \"" + plan.bodies[static_cast<std::size_t>(extent - extents.begin())].settings.name + "\"";
     };
-    warnings.push_back(name(most) + " is " + with_unit(most->size, "m") + " long, but " + name(least) + " only " +
-                       with_unit(least->size, "m") +
+    warnings.push_back(body_text(most) + " is " + with_unit(most->size, "m") + " long, but " + body_text(least) +
+                       " only " + with_unit(least->size, "m") +
                        ": are all lengths in m? For a mesh file in millimetres set mesh.scale to 0.001");
 }
 
 void warn_of_material(const std::string& name, const MaterialSettings& material, std::vector<std::string>& warnings) {
-    const std::string whose =
+    const std::string density_text =
         "material \"" + name + "\" has a density of " + short_text(material.density, 4) + " kg/m^3, ";
     if (material.density < least_density)
-        warnings.push_back(whose + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
+        warnings.push_back(density_text + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
     if (material.density > most_density)
-        warnings.push_back(whose + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
+        warnings.push_back(density_text + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
     if (material.young_modulus > most_modulus)
         warnings.push_back("material \"" + name + "\" has a Young's modulus of " + short_text(material.young_modulus) +
                            " Pa, more than diamond: is it in Pa?");

@@ -18,9 +18,9 @@ namespace skerry {
 
 namespace {
 
-std::string numbered(const char* what, int digits, std::int64_t number) {
+std::string numbered(const char* label, int digits, std::int64_t number) {
     char text[40];
-    std::snprintf(text, sizeof text, "-%s%0*lld", what, digits, static_cast<long long>(number));
+    std::snprintf(text, sizeof text, "-%s%0*lld", label, digits, static_cast<long long>(number));
     return text;
 }
 

@@ -25,7 +25,7 @@ double seconds_of(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-double share_of(double time, double seconds) {
+double fraction_of(double time, double seconds) {
     return time < seconds ? time / seconds : 1;
 }
 
@@ -37,8 +37,8 @@ double cpu_seconds() {
     return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
 }
 
-std::string bar_text(double share) {
-    const int filled = static_cast<int>(share * bar_width);
+std::string bar_text(double fraction) {
+    const int filled = static_cast<int>(fraction * bar_width);
     return "[" + std::string(static_cast<std::size_t>(filled), '#') +
            std::string(static_cast<std::size_t>(bar_width - filled), '.') + "]";
 }
@@ -47,13 +47,13 @@ void clear_bar() {
     if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
 }
 
-Progress::Progress(bool wanted, double seconds, double steps, double step, double begin)
-    : wanted_(wanted),
-      bar_(wanted && isatty(STDERR_FILENO) != 0),
+Progress::Progress(bool visible, double seconds, double steps, double step, double begin)
+    : visible_(visible),
+      bar_(visible && isatty(STDERR_FILENO) != 0),
       seconds_(seconds),
       steps_(steps),
       step_(step),
-      left_(seconds, begin),
+      time_left_(seconds, begin),
       next_(bar_ ? 0 : first_line) {}
 
 void Progress::begin() {
@@ -67,9 +67,9 @@ Progress::~Progress() {
 }
 
 void Progress::show(double time, std::uint64_t steps) {
-    if (!wanted_) return;
+    if (!visible_) return;
     const double wall = watch_.seconds();
-    left_.reach(wall, time);
+    time_left_.reach(wall, time);
     if (wall < next_) return;
     if (!begun_) begin();
     if (bar_)
@@ -81,58 +81,59 @@ void Progress::show(double time, std::uint64_t steps) {
 }
 
 void Progress::show_bar(double wall, double time) {
-    const double share = share_of(time, seconds_);
-    std::fprintf(stderr, "\r\033[K%s %s %%  %s of %s s", bar_text(share).c_str(), short_text(100 * share).c_str(),
+    const double fraction = fraction_of(time, seconds_);
+    std::fprintf(stderr, "\r\033[K%s %s %%  %s of %s s", bar_text(fraction).c_str(), short_text(100 * fraction).c_str(),
                  short_text(time).c_str(), short_text(seconds_).c_str());
-    if (const std::string left = left_text(); !left.empty())
-        std::fprintf(stderr, "  %s x real time  %s left", short_text(time / wall).c_str(), left.c_str());
+    if (const std::string remaining = remaining_text(); !remaining.empty())
+        std::fprintf(stderr, "  %s x real time  %s left", short_text(time / wall).c_str(), remaining.c_str());
 }
 
 void Progress::show_line(double wall, double time, std::uint64_t steps) {
-    const double share = share_of(time, seconds_);
+    const double fraction = fraction_of(time, seconds_);
     std::fprintf(stderr, "skerry: after %s: %s of %s s (%s %%), %s steps", duration_text(wall).c_str(),
-                 short_text(time).c_str(), short_text(seconds_).c_str(), short_text(100 * share).c_str(),
+                 short_text(time).c_str(), short_text(seconds_).c_str(), short_text(100 * fraction).c_str(),
                  grouped(steps).c_str());
-    if (const std::string left = left_text(); !left.empty()) std::fprintf(stderr, "; about %s left", left.c_str());
+    if (const std::string remaining = remaining_text(); !remaining.empty())
+        std::fprintf(stderr, "; about %s left", remaining.c_str());
     std::fputc('\n', stderr);
 }
 
-std::string Progress::left_text() const {
-    const double seconds = left_.estimate();
+std::string Progress::remaining_text() const {
+    const double seconds = time_left_.estimate();
     return std::isfinite(seconds) ? duration_text(seconds) : "";
 }
 
-SetupProgress::SetupProgress(bool wanted, const ScenePlan& plan) : wanted_(wanted), bodies_(plan.bodies.size()) {
+SetupProgress::SetupProgress(bool visible, const ScenePlan& plan) : visible_(visible), bodies_(plan.bodies.size()) {
     std::size_t tetrahedra = 0;
     for (const BodyPlan& body : plan.bodies) tetrahedra += plan.meshes[body.mesh].tetrahedra.size();
-    wanted_ = wanted && tetrahedra >= large_scene;
-    if (wanted_)
+    visible_ = visible && tetrahedra >= large_scene;
+    if (visible_)
         std::fprintf(stderr, "skerry: set-up of %s tetrahedra: adding %s\n", grouped(tetrahedra).c_str(),
                      bodies_ == 1 ? "the body" : (grouped(bodies_) + " bodies").c_str());
 }
 
 void SetupProgress::added(std::size_t bodies) {
-    if (!wanted_ || bodies == bodies_ || watch_.seconds() < last_ + first_line) return;
+    if (!visible_ || bodies == bodies_ || watch_.seconds() < last_ + first_line) return;
     last_ = watch_.seconds();
     std::fprintf(stderr, "skerry: set-up after %s: %s of %s bodies\n", duration_text(last_).c_str(),
                  grouped(bodies).c_str(), grouped(bodies_).c_str());
 }
 
 void SetupProgress::begin(const char* work) {
-    if (!wanted_) return;
+    if (!visible_) return;
     last_ = watch_.seconds();
     std::fprintf(stderr, "skerry: set-up after %s: %s\n", duration_text(last_).c_str(), work);
 }
 
-ActivityLine::ActivityLine(bool wanted) : wanted_(wanted), terminal_(isatty(STDERR_FILENO) != 0) {}
+ActivityLine::ActivityLine(bool visible) : visible_(visible), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 ActivityLine::~ActivityLine() {
-    if (wanted_) clear_bar();
+    if (visible_) clear_bar();
 }
 
 void ActivityLine::show(const std::string& activity) {
     const double wall = watch_.seconds();
-    if (!wanted_ || (!terminal_ && wall < next_)) return;
+    if (!visible_ || (!terminal_ && wall < next_)) return;
     if (terminal_)
         std::fprintf(stderr, "\r\033[K%s, %.1f s", activity.c_str(), wall);
     else
@@ -141,8 +142,8 @@ void ActivityLine::show(const std::string& activity) {
     std::fflush(stderr);
 }
 
-ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool wanted) {
-    ActivityLine line(wanted);
+ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool visible) {
+    ActivityLine line(visible);
     return plan_scene(file, overrides, [&](const std::string& activity) { line.show(activity); });
 }
 

@@ -26,18 +26,18 @@ private:
 /// Returns the CPU time of this process since its start, summed over all threads [s].
 double cpu_seconds();
 
-/// Returns a bar filled to the fraction `share`, for example [######..................].
-std::string bar_text(double share);
+/// Returns a bar filled to this fraction, for example [######..................].
+std::string bar_text(double fraction);
 
 /// Erases the progress bar, so that a message can be printed. Does nothing if standard error is not a terminal.
 void clear_bar();
 
 class Progress {
 public:
-    /// `wanted`: if false, nothing is displayed. `seconds`: simulated time at which the run ends [s]. `steps`:
+    /// `visible`: if false, nothing is displayed. `seconds`: simulated time at which the run ends [s]. `steps`:
     /// estimated number of steps. `step`: step length [s]. `begin`: simulated time at which the run begins or resumes
     /// [s]. All output goes to standard error.
-    Progress(bool wanted, double seconds, double steps, double step, double begin);
+    Progress(bool visible, double seconds, double steps, double step, double begin);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -52,28 +52,28 @@ private:
     void show_bar(double wall, double time);
     void show_line(double wall, double time, std::uint64_t steps);
     /// Returns the estimated time left as text, or an empty text if there is no estimate yet.
-    std::string left_text() const;
+    std::string remaining_text() const;
 
-    bool wanted_, bar_;
+    bool visible_, bar_;
     double seconds_, steps_, step_;
     bool begun_ = false;
     Stopwatch watch_;
-    TimeLeft left_;
+    TimeLeft time_left_;
     double next_;  // wall time of the next display [s]
 };
 
 /// Reports the set-up of a large scene on standard error. A small scene is set up within a second and is not reported.
 class SetupProgress {
 public:
-    /// With `wanted` false nothing is reported.
-    SetupProgress(bool wanted, const ScenePlan& plan);
+    /// With `visible` false nothing is reported.
+    SetupProgress(bool visible, const ScenePlan& plan);
     /// Reports the number of bodies that were added, at most once a second.
     void added(std::size_t bodies);
     /// Reports that the given work begins.
     void begin(const char* work);
 
 private:
-    bool wanted_;
+    bool visible_;
     std::size_t bodies_;
     double last_ = 0;  // wall time of the last line [s]
     Stopwatch watch_;
@@ -83,7 +83,7 @@ private:
 /// 40 seconds and so on, so that a log shows that long work continues.
 class ActivityLine {
 public:
-    explicit ActivityLine(bool wanted);
+    explicit ActivityLine(bool visible);
     ~ActivityLine();
     ActivityLine(const ActivityLine&) = delete;
     ActivityLine& operator=(const ActivityLine&) = delete;
@@ -91,13 +91,13 @@ public:
     void show(const std::string& activity);
 
 private:
-    bool wanted_, terminal_;
+    bool visible_, terminal_;
     double next_ = 10;  // wall time of the next line, if standard error is not a terminal [s]
     Stopwatch watch_;
 };
 
-/// Plans a scene. If `wanted` is true, an ActivityLine shows the progress while surfaces of the scene are filled with
+/// Plans a scene. If `visible` is true, an ActivityLine shows the progress while surfaces of the scene are filled with
 /// tetrahedra.
-ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool wanted);
+ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool visible);
 
 }  // namespace skerry

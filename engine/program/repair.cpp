@@ -20,51 +20,51 @@ namespace {
 constexpr Real least_count = 0.7;
 
 /// Returns the stable step of a body with this mesh [s], or 0 if the mesh is not valid for a body.
-Real step_of(const Mesh& mesh, const MeshReport& report, const StepCase& of) {
-    return report.tetrahedra > 0 && report.inverted + report.flat == 0 ? step_bound(mesh, of, false).step : 0;
+Real step_of(const Mesh& mesh, const MeshReport& report, const BodyCase& body_case) {
+    return report.tetrahedra > 0 && report.inverted + report.flat == 0 ? step_bound(mesh, body_case, false).step : 0;
 }
 
-MeshFigures figures_of(const Mesh& mesh, const SurfaceMesh& surface, const StepCase& of) {
+MeshFigures figures_of(const Mesh& mesh, const SurfaceMesh& surface, const BodyCase& body_case) {
     MeshFigures figures{.mesh = inspect(mesh), .surface_area = mesh::area_of(surface), .step = 0};
-    figures.step = step_of(mesh, figures.mesh, of);
+    figures.step = step_of(mesh, figures.mesh, body_case);
     return figures;
 }
 
 class Repair {
 public:
-    Repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
+    Repair(const Mesh& mesh, const std::string& name, const BodyCase& body_case, Real tolerance,
            const std::function<void(const std::string&)>& progress)
-        : parted_(mesh::part_fans(mesh)), mesh_(parted_.mesh), of_(of), progress_(progress) {
+        : parted_(mesh::part_fans(mesh)), mesh_(parted_.mesh), body_case_(body_case), progress_(progress) {
         const std::string fault = mesh::manifold_fault(boundary_triangles(mesh_.tetrahedra));
         if (!fault.empty())
-            refuse_in(what, "boundary", {}, fault, "a closed manifold: two triangles at each edge",
+            refuse_in(name, "boundary", {}, fault, "a closed manifold: two triangles at each edge",
                       parted_.parted > 0 || fault.find("triangles") != std::string::npos
                           ? "separate tetrahedra that share only an edge: delete the tetrahedra on one side of the "
                             "edge, or give them their own copies of its two nodes"
                           : "");
         if (parted_.parts > 1)
-            refuse_in(what, "tetrahedra", {}, std::to_string(parted_.parts) + " parts without common faces",
+            refuse_in(name, "tetrahedra", {}, std::to_string(parted_.parts) + " parts without common faces",
                       "one part, in which common faces connect all tetrahedra",
                       "save each part as a separate mesh and repair the meshes one by one");
         surface_ = mesh::boundary(mesh_);
-        result_.before = figures_of(mesh, surface_, of);
+        result_.before = figures_of(mesh, surface_, body_case);
         result_.parted = parted_.parted;
         const MeshReport& report = result_.before.mesh;
         if (report.labels.size() > 1)
-            refuse_in(what, "tetrahedra", "label", std::to_string(report.labels.size()) + " different labels",
+            refuse_in(name, "tetrahedra", "label", std::to_string(report.labels.size()) + " different labels",
                       "one label, because all tetrahedra are replaced and the boundary between materials would be lost",
                       "save the tetrahedra of each label as a separate mesh and repair the meshes one by one");
         result_.tolerance = tolerance * (report.upper - report.lower).norm();
     }
 
     RepairedMesh run() {
-        mesh::BestMesh best =
-            mesh::best_mesh({.surface = surface_,
-                             .edge = result_.before.mesh.mean_edge,
-                             .tolerance = result_.tolerance,
-                             .least_count = least_count * static_cast<Real>(mesh_.tetrahedra.size()),
-                             .setup = {.progress = progress_},
-                             .stable_step = [this](const Mesh& mesh) { return step_of(mesh, inspect(mesh), of_); }});
+        mesh::BestMesh best = mesh::best_mesh(
+            {.surface = surface_,
+             .edge = result_.before.mesh.mean_edge,
+             .tolerance = result_.tolerance,
+             .least_count = least_count * static_cast<Real>(mesh_.tetrahedra.size()),
+             .setup = {.progress = progress_},
+             .stable_step = [this](const Mesh& mesh) { return step_of(mesh, inspect(mesh), body_case_); }});
         take(std::move(best));
         return std::move(result_);
     }
@@ -81,10 +81,10 @@ private:
         else
             result_.refusal = best.failure + "; check whether the surface intersects itself";
         if (result_.refusal.empty() || parted_.parted == 0) return;
-        result_.kept = std::move(result_.refusal);
+        result_.reason_unchanged = std::move(result_.refusal);
         result_.refusal.clear();
         result_.mesh = mesh_;
-        result_.after = figures_of(mesh_, surface_, of_);
+        result_.after = figures_of(mesh_, surface_, body_case_);
         result_.distance = {};
         result_.collapsed = result_.flipped = 0;
     }
@@ -92,7 +92,7 @@ private:
     /// Sets result_.refusal to a reason if the new mesh is not good enough to be written.
     void judge() {
         const SurfaceMesh surface = mesh::boundary(result_.mesh);
-        result_.after = figures_of(result_.mesh, surface, of_);
+        result_.after = figures_of(result_.mesh, surface, body_case_);
         progress_("measuring the movement of the surface");
         result_.distance = mesh::surface_distance(surface_, surface);
         // With a tolerance of 0 the surfaces must agree except for rounding errors.
@@ -109,7 +109,7 @@ private:
 
     mesh::PartedMesh parted_;
     const Mesh& mesh_;  // refers to parted_.mesh
-    const StepCase& of_;
+    const BodyCase& body_case_;
     const std::function<void(const std::string&)>& progress_;
     SurfaceMesh surface_;
     RepairedMesh result_;
@@ -117,9 +117,9 @@ private:
 
 }  // namespace
 
-RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
+RepairedMesh repair(const Mesh& mesh, const std::string& name, const BodyCase& body_case, Real tolerance,
                     const std::function<void(const std::string&)>& progress) {
-    return Repair(mesh, what, of, tolerance, progress).run();
+    return Repair(mesh, name, body_case, tolerance, progress).run();
 }
 
 }  // namespace skerry

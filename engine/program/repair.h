@@ -26,7 +26,7 @@ struct RepairedMesh {
     // Number of nodes that were split because some of their tetrahedra were not connected by faces.
     std::size_t parted = 0;
     // If the result is the old mesh with split nodes: reason why its tetrahedra were not replaced. Otherwise empty.
-    std::string kept;
+    std::string reason_unchanged;
     std::string refusal;  // reason why the mesh must not be written; otherwise empty
 };
 
@@ -39,10 +39,10 @@ struct RepairedMesh {
 /// 4. If no new tetrahedra are better than the old ones but nodes were split, the old tetrahedra are returned with
 /// the split nodes.
 ///
-/// Errors name the mesh by `what`. `progress` is called many times a second with a description of the current activity.
+/// Errors name the mesh by `name`. `progress` is called many times a second with a description of the current activity.
 /// Throws SceneError if the boundary of the mesh is not a closed manifold, or if the mesh has several labels or
 /// unconnected parts.
-RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
+RepairedMesh repair(const Mesh& mesh, const std::string& name, const BodyCase& body_case, Real tolerance,
                     const std::function<void(const std::string&)>& progress);
 
 }  // namespace skerry

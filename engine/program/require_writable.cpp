@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse_output(const std::filesystem::path& place, const std::string& found,
+[[noreturn]] void refuse_output(const std::filesystem::path& path, const std::string& found,
                                 const std::string& expected) {
-    refuse_in(place.string(), "output", {}, found, expected);
+    refuse_in(path.string(), "output", {}, found, expected);
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ void require_writable_file(const std::filesystem::path& file) {
 }
 
 void require_distinct(std::span<const NamedFile> files) {
-    const auto place = [](const std::filesystem::path& file) {
+    const auto real_path = [](const std::filesystem::path& file) {
         std::error_code error;
         // If the file does not exist yet, weakly_canonical() keeps a relative name relative, so the name is first made
         // absolute.
@@ -51,7 +51,7 @@ void require_distinct(std::span<const NamedFile> files) {
     };
     for (std::size_t i = 0; i < files.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
-            if (files[i].file.empty() || files[k].file.empty() || place(files[i].file) != place(files[k].file))
+            if (files[i].file.empty() || files[k].file.empty() || real_path(files[i].file) != real_path(files[k].file))
                 continue;
             std::error_code error;
             const std::filesystem::file_status found = std::filesystem::status(files[i].file, error);

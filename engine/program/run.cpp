@@ -85,15 +85,15 @@ public:
             if (result_.status != "ok" && !(world_.time() > begin))
                 break;  // the run stopped before the first step of this frame, so the frame is not written
             add_frame();
-            const bool whole = length >= (1 - RunPlan::slack) * plan_.frame_step;
+            const bool full_frame = length >= (1 - RunPlan::slack) * plan_.frame_step;
             const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());
-            if (result_.status == "ok" && due) write_checkpoint(whole ? frame + 1 : frame, 0);
+            if (result_.status == "ok" && due) write_checkpoint(full_frame ? frame + 1 : frame, 0);
         }
         result_.checkpoints = checkpoints_.written();
         result_.checkpoints_failed = checkpoints_.failed();
         result_.probes = probes_.records();
         result_.ranks = ranks_.report(result_.seconds_wall, steps_);
-        if (const World* whole = ranks_.whole()) errors_.finish(*whole);
+        if (const World* gathered = ranks_.gathered_world()) errors_.finish(*gathered);
         result_.errors = errors_.bodies();
         if (figures_) result_.series = figures_->all();
     }
@@ -110,9 +110,9 @@ private:
             probes_.go_on(memory_.probes);
     }
     void add_frame() {
-        if (const World* whole = ranks_.whole()) {
-            outputs_->add_frame(*whole);
-            result_.peak_kinetic_energy = std::max(result_.peak_kinetic_energy, whole->energy().kinetic);
+        if (const World* gathered = ranks_.gathered_world()) {
+            outputs_->add_frame(*gathered);
+            result_.peak_kinetic_energy = std::max(result_.peak_kinetic_energy, gathered->energy().kinetic);
         }
         if (ranks_.any(result_.status == "ok" && outputs_ != nullptr && outputs_->all_failed()))
             result_.status =
@@ -136,12 +136,12 @@ private:
             result_.status = step.message() + " (" + advice + ")";
         const Real sampled = step.ok() ? duration : world_.time() - start;
         if (!(sampled > 0)) return;
-        const World* const whole = ranks_.whole();
-        if (whole == nullptr) return;
-        probes_.sample(*whole, sampled);
-        outputs_->sample(*whole);
-        errors_.sample(*whole);
-        if (figures_) figures_->sample(*whole);
+        const World* const gathered = ranks_.gathered_world();
+        if (gathered == nullptr) return;
+        probes_.sample(*gathered, sampled);
+        outputs_->sample(*gathered);
+        errors_.sample(*gathered);
+        if (figures_) figures_->sample(*gathered);
     }
     void write_checkpoint(long frame, int sample) {
         memory_.frame = frame;
@@ -150,7 +150,7 @@ private:
         memory_.peak_kinetic_energy = result_.peak_kinetic_energy;
         memory_.probes = probes_.saved();
         const Stopwatch watch;
-        if (checkpoints_.wanted()) checkpoints_.write(ranks_.whole(), world_.time(), memory_);
+        if (checkpoints_.wanted()) checkpoints_.write(ranks_.gathered_world(), world_.time(), memory_);
         ranks_.set_last_words(checkpoints_.last_words());
         result_.seconds_output += watch.seconds();
     }
@@ -216,7 +216,7 @@ std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, s
             !seen.emplace(body.mesh, body.material, body.materials, body.settings.element).second)
             continue;
         const std::string text =
-            thin_part_text(plan.meshes[body.mesh], world.surface(bodies[b]), step_case(plan, body));
+            thin_part_text(plan.meshes[body.mesh], world.surface(bodies[b]), body_case_of(plan, body));
         if (!text.empty()) found.push_back("body '" + body.settings.name + "': " + text);
     }
     return found;

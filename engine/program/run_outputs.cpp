@@ -15,38 +15,39 @@ namespace skerry {
 namespace {
 
 /// Returns the file or folder of an output, or an empty path if the output is not requested.
-std::filesystem::path place_of(const OutputFormat& format, const RunOptions& options) {
+std::filesystem::path path_of(const OutputFormat& format, const RunOptions& options) {
     const auto found = options.outputs.find(format.option);
     return found == options.outputs.end() ? std::filesystem::path() : found->second;
 }
 
 /// Throws SceneError unless all outputs can be written and no file is used twice. Returns all files that the user has
 /// named, for reading or for writing.
-std::vector<NamedFile> check_places(const RunOptions& options) {
+std::vector<NamedFile> check_paths(const RunOptions& options) {
     // The checkpoint file may be the file from which the run resumes. It is then listed only once, because
     // require_distinct() refuses equal files.
     std::error_code error;
-    const bool same = std::filesystem::equivalent(options.restart, options.checkpoint, error);
+    const bool same_file = std::filesystem::equivalent(options.restart, options.checkpoint, error);
     std::vector<NamedFile> files{{"the scene", options.scene},
-                                 {"--restart", same ? std::filesystem::path() : options.restart},
+                                 {"--restart", same_file ? std::filesystem::path() : options.restart},
                                  {"--checkpoint", options.checkpoint}};
     if (!options.checkpoint.empty()) require_writable_file(options.checkpoint);
     for (const OutputFormat& format : output_formats()) {
-        const std::filesystem::path place = place_of(format, options);
-        if (place.empty()) continue;
+        const std::filesystem::path path = path_of(format, options);
+        if (path.empty()) continue;
         if (format.is_folder) {
-            require_writable_folder(place);
+            require_writable_folder(path);
         } else {
-            require_writable_file(place);
-            files.push_back({format.option, place});
+            require_writable_file(path);
+            files.push_back({format.option, path});
         }
     }
     require_distinct(files);
-    const auto has = [&](const char* option) {
+    const auto is_requested = [&](const char* option) {
         const auto found = options.outputs.find(option);
         return found != options.outputs.end() && !found->second.empty();
     };
-    if ((options.film_color != FilmColor::none || options.film_max) && !has("--film") && !has("--gltf"))
+    if ((options.film_color != FilmColor::none || options.film_max) && !is_requested("--film") &&
+        !is_requested("--gltf"))
         refuse(options.film_max ? "--film-max" : "--film-color", {}, "neither --film nor --gltf",
                "at least one of them, because this option sets their colours");
     return files;
@@ -56,10 +57,10 @@ std::vector<NamedFile> check_places(const RunOptions& options) {
 
 RunOutputs::RunOutputs(const RunOptions& options, Scene& scene, const RunStart& start, RunResult& result)
     : result_(result) {
-    const std::vector<NamedFile> files = check_places(options);
+    const std::vector<NamedFile> files = check_paths(options);
     for (const OutputFormat& format : output_formats())
-        if (const std::filesystem::path place = place_of(format, options); !place.empty())
-            outputs_.push_back({format.option, format.make({place, scene, options, result})});
+        if (const std::filesystem::path path = path_of(format, options); !path.empty())
+            outputs_.push_back({format.option, format.make({path, scene, options, result})});
     for (const Output& output : outputs_)
         for (const NamedFile& file : files)
             if (!file.file.empty() && output.writer->may_write(file.file))

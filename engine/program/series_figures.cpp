@@ -37,8 +37,8 @@ std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
     for (std::size_t c = 1; c < recorder_.columns().size(); ++c) {
         const SeriesSummary summary = summary_of_series(time, values_of(c));
         const SeriesColumn& column = recorder_.columns()[c];
-        const auto add = [&](const char* which, double value) {
-            figures.emplace_back(column.probe + "." + column.quantity + which + ending(column.unit), value);
+        const auto add = [&](const char* statistic, double value) {
+            figures.emplace_back(column.probe + "." + column.quantity + statistic + ending(column.unit), value);
         };
         add("_end", summary.end);
         add("_min", summary.least);

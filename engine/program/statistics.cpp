@@ -18,21 +18,21 @@ Json number_or_null(double value) {
 
 Json errors_of(const RunResult& result) {
     Json errors = Json::array();
-    for (const ErrorEstimate& of : result.errors)
-        errors.push_back(object_of({{"body", of.name},
-                                    {"mesh", number_or_null(of.mesh)},
-                                    {"deflection", number_or_null(of.deflection)},
-                                    {"interpolation", number_or_null(of.interpolation)},
-                                    {"stress", number_or_null(of.stress)},
-                                    {"step", number_or_null(of.step)},
-                                    {"contact", number_or_null(of.contact)},
-                                    {"deformation", number_or_null(of.deformation)},
-                                    {"overlap", number_or_null(of.overlap)},
-                                    {"gap", number_or_null(of.gap)},
-                                    {"contact_radius", number_or_null(of.contact_radius)},
-                                    {"contact_edge", number_or_null(of.contact_edge)},
-                                    {"worst_tetrahedron", of.worst_tetrahedron},
-                                    {"time", number_or_null(of.time)}}));
+    for (const ErrorEstimate& estimate : result.errors)
+        errors.push_back(object_of({{"body", estimate.name},
+                                    {"mesh", number_or_null(estimate.mesh)},
+                                    {"deflection", number_or_null(estimate.deflection)},
+                                    {"interpolation", number_or_null(estimate.interpolation)},
+                                    {"stress", number_or_null(estimate.stress)},
+                                    {"step", number_or_null(estimate.step)},
+                                    {"contact", number_or_null(estimate.contact)},
+                                    {"deformation", number_or_null(estimate.deformation)},
+                                    {"overlap", number_or_null(estimate.overlap)},
+                                    {"gap", number_or_null(estimate.gap)},
+                                    {"contact_radius", number_or_null(estimate.contact_radius)},
+                                    {"contact_edge", number_or_null(estimate.contact_edge)},
+                                    {"worst_tetrahedron", estimate.worst_tetrahedron},
+                                    {"time", number_or_null(estimate.time)}}));
     return errors;
 }
 
@@ -91,19 +91,19 @@ Json statistics_of(const RunResult& result) {
     for (const auto& [option, failure] : result.outputs_failed) failed[option] = failure;
     for (const StartMove& move : r.start_moves)
         moves.push_back(object_of({{"body", move.name}, {"translation", vector_json(move.translation)}}));
-    for (const SelfCrossing& of : r.self_crossings)
-        self_crossings.push_back(object_of({{"body", of.name},
-                                            {"self_contact", of.self_contact},
-                                            {"first_time", of.first_time},
-                                            {"last_time", of.last_time},
-                                            {"last_places", of.last_places},
-                                            {"most_places", of.most_places}}));
-    for (const StepLimitReport& of : r.step_limits)
-        limits.push_back(object_of({{"limit", name_of(of.limit)},
-                                    {"body", of.body_name},
-                                    {"steps", of.steps},
-                                    {"given_up", of.tries},
-                                    {"seconds", of.seconds}}));
+    for (const SelfCrossing& crossing : r.self_crossings)
+        self_crossings.push_back(object_of({{"body", crossing.name},
+                                            {"self_contact", crossing.self_contact},
+                                            {"first_time", crossing.first_time},
+                                            {"last_time", crossing.last_time},
+                                            {"last_places", crossing.last_places},
+                                            {"most_places", crossing.most_places}}));
+    for (const StepLimitReport& limit : r.step_limits)
+        limits.push_back(object_of({{"limit", name_of(limit.limit)},
+                                    {"body", limit.body_name},
+                                    {"steps", limit.steps},
+                                    {"given_up", limit.tries},
+                                    {"seconds", limit.seconds}}));
     for (const StageReport& stage : r.stages)
         stages[stage.name] = object_of({{"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}});
     for (const BrokenTie& tie : result.broken_ties)

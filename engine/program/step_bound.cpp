@@ -16,7 +16,7 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t listed_count = 3;
-constexpr Real shares[] = {0.001, 0.01};
+constexpr Real fractions[] = {0.001, 0.01};
 
 Real altitude_of(const Mesh& mesh, Index tetrahedron) {
     const std::array<Index, 4>& corners = mesh.tetrahedra[static_cast<std::size_t>(tetrahedron)];
@@ -48,27 +48,28 @@ std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     return order;
 }
 
-/// Returns a copy of the mesh without the tetrahedra `gone`, and without the nodes that no remaining tetrahedron uses.
-Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
+/// Returns a copy of the mesh without the tetrahedra `removed`, and without the nodes that no remaining tetrahedron
+/// uses.
+Mesh without_tetrahedra(const Mesh& mesh, std::span<const Index> removed) {
     std::vector<bool> stays(mesh.tetrahedra.size(), true);
-    for (const Index t : gone) stays[static_cast<std::size_t>(t)] = false;
-    Mesh rest;
+    for (const Index t : removed) stays[static_cast<std::size_t>(t)] = false;
+    Mesh remaining;
     std::vector<Index> row(mesh.nodes.size(), no_index);
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         if (!stays[t]) continue;
         std::array<Index, 4> corners = mesh.tetrahedra[t];
         for (Index& n : corners) {
-            Index& place = row[static_cast<std::size_t>(n)];
-            if (place == no_index) {
-                place = static_cast<Index>(rest.nodes.size());
-                rest.nodes.push_back(mesh.nodes[static_cast<std::size_t>(n)]);
+            Index& new_row = row[static_cast<std::size_t>(n)];
+            if (new_row == no_index) {
+                new_row = static_cast<Index>(remaining.nodes.size());
+                remaining.nodes.push_back(mesh.nodes[static_cast<std::size_t>(n)]);
             }
-            n = place;
+            n = new_row;
         }
-        rest.tetrahedra.push_back(corners);
-        if (!mesh.label.empty()) rest.label.push_back(mesh.label[t]);
+        remaining.tetrahedra.push_back(corners);
+        if (!mesh.label.empty()) remaining.label.push_back(mesh.label[t]);
     }
-    return rest;
+    return remaining;
 }
 
 // Number of tetrahedra above which a mesh counts as large. It takes seconds to build another world with such a mesh.
@@ -83,46 +84,46 @@ Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     return *last / *std::min_element(sorted.begin(), last + 1);
 }
 
-/// Computes, for each fraction in `shares`, the stable step of the mesh without this fraction of its tetrahedra, the
+/// Computes, for each fraction in `fractions`, the stable step of the mesh without this fraction of its tetrahedra, the
 /// worst ones. A fraction is removed in several rounds, because each removal changes the nodal masses and so the
 /// ranking of the remaining tetrahedra. `step`: step that each tetrahedron allows [s]. `order`: result of
 /// worst_first().
-void find_steps_without(const Mesh& mesh, const StepCase& of, std::span<const Real> step, std::vector<Index> order,
-                        StepBound& bound) {
+void find_steps_without(const Mesh& mesh, const BodyCase& body_case, std::span<const Real> step,
+                        std::vector<Index> order, StepBound& bound) {
     // In a large mesh, a fraction of tetrahedra is not removed if the ratio of its longest to its shortest step is
     // below this value: removal gains little.
     constexpr Real least_ratio = 1.5;
     const bool large = mesh.tetrahedra.size() > many;
     // number of rounds for each fraction; a large mesh takes seconds per round
     const std::size_t rounds = large ? 1 : 3;
-    Mesh rest = mesh;
-    std::size_t gone = 0;
-    for (const Real share : shares) {
-        const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<Real>(mesh.tetrahedra.size())));
-        if (count >= mesh.tetrahedra.size() || count == gone) continue;
+    Mesh remaining = mesh;
+    std::size_t removed = 0;
+    for (const Real fraction : fractions) {
+        const auto count = static_cast<std::size_t>(std::ceil(fraction * static_cast<Real>(mesh.tetrahedra.size())));
+        if (count >= mesh.tetrahedra.size() || count == removed) continue;
         if (large) {
             const Real ratio = ratio_within_worst(step, count);
             if (ratio < least_ratio) {
-                bound.alike_share = share;
+                bound.alike_share = fraction;
                 bound.alike_ratio = ratio;
                 continue;
             }
         }
-        const std::size_t at_once = (count - gone + rounds - 1) / rounds;
+        const std::size_t at_once = (count - removed + rounds - 1) / rounds;
         Real longer = 0;
-        while (gone < count) {
-            const std::size_t taken = std::min(at_once, count - gone);
-            rest = taken_out(rest, std::span(order).first(taken));
-            gone += taken;
-            const ExplicitBody body = explicit_body(rest, of);
+        while (removed < count) {
+            const std::size_t removed_now = std::min(at_once, count - removed);
+            remaining = without_tetrahedra(remaining, std::span(order).first(removed_now));
+            removed += removed_now;
+            const ExplicitBody body = explicit_body(remaining, body_case);
             longer = body.world.stable_step();
-            order = worst_first(rest, body.world.tetrahedron_steps(body.handle));
+            order = worst_first(remaining, body.world.tetrahedron_steps(body.handle));
         }
-        bound.without.push_back({share, count, longer});
+        bound.without.push_back({fraction, count, longer});
     }
 }
 
-void add_details(const Mesh& mesh, const StepCase& of, std::span<const Real> step, StepBound& bound) {
+void add_details(const Mesh& mesh, const BodyCase& body_case, std::span<const Real> step, StepBound& bound) {
     const std::vector<Index> order = worst_first(mesh, step);
     const auto least = static_cast<Index>(std::min_element(step.begin(), step.end()) - step.begin());
     bound.worst.push_back(describe(mesh, least, step[static_cast<std::size_t>(least)]));
@@ -130,35 +131,36 @@ void add_details(const Mesh& mesh, const StepCase& of, std::span<const Real> ste
         if (bound.worst.size() == listed_count) break;
         if (t != least) bound.worst.push_back(describe(mesh, t, step[static_cast<std::size_t>(t)]));
     }
-    find_steps_without(mesh, of, step, order, bound);
+    find_steps_without(mesh, body_case, step, order, bound);
 }
 
 }  // namespace
 
-StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
-    StepCase of{.settings = plan.settings,
-                .material = plan.materials[body.material].second,
-                .body = body.settings,
-                .labelled = {}};
-    for (const auto& [label, material] : body.materials) of.labelled.emplace(label, plan.materials[material].second);
-    return of;
+BodyCase body_case_of(const ScenePlan& plan, const BodyPlan& body) {
+    BodyCase body_case{.settings = plan.settings,
+                       .material = plan.materials[body.material].second,
+                       .body = body.settings,
+                       .labelled = {}};
+    for (const auto& [label, material] : body.materials)
+        body_case.labelled.emplace(label, plan.materials[material].second);
+    return body_case;
 }
 
-StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
-    const ExplicitBody body = explicit_body(mesh, of);
+StepBound step_bound(const Mesh& mesh, const BodyCase& body_case, bool details) {
+    const ExplicitBody body = explicit_body(mesh, body_case);
     StepBound bound{
         .step = body.world.stable_step(), .element = body.world.element(body.handle), .worst = {}, .without = {}};
-    if (details) add_details(mesh, of, body.world.tetrahedron_steps(body.handle), bound);
+    if (details) add_details(mesh, body_case, body.world.tetrahedron_steps(body.handle), bound);
     return bound;
 }
 
-StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const StepCase& of) {
+StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const BodyCase& body_case) {
     const Model& model = WorldAccess::state_of(world).model;
     StepBound bound{.step = step_of_body(model, static_cast<std::size_t>(model.row(body, "step_bound"))),
                     .element = world.element(body),
                     .worst = {},
                     .without = {}};
-    add_details(mesh, of, world.tetrahedron_steps(body), bound);
+    add_details(mesh, body_case, world.tetrahedron_steps(body), bound);
     return bound;
 }
 

@@ -11,9 +11,9 @@ namespace skerry {
 struct BodyPlan;
 struct ScenePlan;
 
-/// Returns the StepCase of a body (explicit_body.h): its materials and settings. step_bound() treats the body as
+/// Returns the BodyCase of a body (explicit_body.h): its materials and settings. step_bound() treats the body as
 /// explicit and elastic, so that its mesh has a stable step even if its dynamics are rigid or implicit.
-StepCase step_case(const ScenePlan& plan, const BodyPlan& body);
+BodyCase body_case_of(const ScenePlan& plan, const BodyPlan& body);
 
 struct CostlyTetrahedron {
     Index tetrahedron = 0;      // index of the tetrahedron in the mesh
@@ -47,10 +47,10 @@ struct StepBound {
 /// Computes the stable step of a body with this mesh. With `details` it also finds the few worst tetrahedra, and the
 /// stable step of the mesh without its worst 0.1 % and 1 % of the tetrahedra. Throws SceneError if the mesh cannot be a
 /// body.
-StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details);
+StepBound step_bound(const Mesh& mesh, const BodyCase& body_case, bool details);
 
 /// Computes the stable step, with details, of a body in an existing world. The world must not have planned or made a
-/// step since the body was added. `mesh` and `of` describe the body.
-StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const StepCase& of);
+/// step since the body was added. `mesh` and `body_case` describe the body.
+StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const BodyCase& body_case);
 
 }  // namespace skerry

@@ -24,8 +24,9 @@ constexpr Real usual_step = 1.0 / 120;
 struct ShortSteps {
     std::size_t first = 0;  // index in ScenePlan::bodies of the body with the shortest step
     std::size_t count = 0;  // number of stiff bodies
-    // `step`: shortest stable step of the explicit bodies. `others`: shortest one of the bodies that are not stiff [s]
-    Real step = infinity, others = infinity;
+    // `step`: shortest stable step of the explicit bodies. `step_without`: shortest one of the bodies that are not
+    // stiff [s]
+    Real step = infinity, step_without = infinity;
 };
 
 ShortSteps short_steps(const ScenePlan& plan, const World& world) {
@@ -45,7 +46,7 @@ ShortSteps short_steps(const ScenePlan& plan, const World& world) {
         if (!chosen && step[b] < much_longer * stiff.step)
             ++stiff.count;
         else
-            stiff.others = std::min(stiff.others, step[b]);
+            stiff.step_without = std::min(stiff.step_without, step[b]);
     }
     return stiff;
 }
@@ -66,11 +67,11 @@ std::string note_of_forces(const World& world, double steps) {
     Index body = no_index;
     const Real step = stable_step(model, &body);
     if (body == no_index) return {};
-    const Real others = std::min(model.bodies.stable_step[body], world.settings().step_size.value_or(usual_step));
-    if (!(others > much_longer * step)) return {};
+    const Real step_without = std::min(model.bodies.stable_step[body], world.settings().step_size.value_or(usual_step));
+    if (!(step_without > much_longer * step)) return {};
     return "body \"" + model.body_records[static_cast<std::size_t>(body)].name +
            "\": the springs, cables, cavities, fibres or loads that act on it need steps of " + with_unit(step, "s") +
-           ": about " + count_text(steps) + " steps, " + short_text(others / step) +
+           ": about " + count_text(steps) + " steps, " + short_text(step_without / step) +
            " times as many as otherwise; reduce their stiffness, tension, pressure or drag";
 }
 
@@ -80,16 +81,16 @@ std::string stiff_note(const ScenePlan& plan, const World& world, double steps, 
     if (steps < few_steps || plan.bodies.empty()) return {};
     if (std::string text = note_of_forces(world, steps); !text.empty()) return text;
     const ShortSteps stiff = short_steps(plan, world);
-    const Real others = std::min({stiff.others, sample, world.settings().step_size.value_or(usual_step)});
-    if (stiff.count == 0 || !(others > much_longer * stiff.step)) return {};
+    const Real step_without = std::min({stiff.step_without, sample, world.settings().step_size.value_or(usual_step)});
+    if (stiff.count == 0 || !(step_without > much_longer * stiff.step)) return {};
     const BodyPlan& body = plan.bodies[stiff.first];
     std::string text = mesh_of_body_text(plan, stiff.first);
     if (stiff.count > 1)
         text += " and " + grouped(stiff.count - 1) + (stiff.count == 2 ? " more body like it" : " more bodies like it");
     text += std::string(stiff.count > 1 ? " are" : " is") + " explicit, of material \"" +
             plan.materials[body.material].first + "\", and " + (stiff.count > 1 ? "need" : "needs") + " steps of " +
-            with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " + short_text(others / stiff.step) +
-            " times as many as otherwise; ";
+            with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " +
+            short_text(step_without / stiff.step) + " times as many as otherwise; ";
     const std::vector<Real> each = world.tetrahedron_steps(bodies_in_order(world)[stiff.first]);
     if (const std::size_t bad = count_bad(each); bad > 0)
         return text + "the cause: " + grouped(bad) + " of " + grouped(each.size()) +

@@ -58,8 +58,9 @@ std::string penetration_text(const RunResult& result) {
     if (r.held_penetration > 0) text += (text.empty() ? "" : "; ") + ("held surfaces " + deep(r.held_penetration));
     if (text.empty()) text = "none in any contact";
     if (!r.self_crossings.empty()) {
-        const bool now = std::ranges::any_of(r.self_crossings, [](const auto& of) { return of.last_places > 0; });
-        return text + "; a surface " + (now ? "crosses" : "crossed") +
+        const bool crosses_at_end =
+            std::ranges::any_of(r.self_crossings, [](const auto& crossing) { return crossing.last_places > 0; });
+        return text + "; a surface " + (crosses_at_end ? "crosses" : "crossed") +
                " itself, to a depth that is not measured (see the warning)";
     }
     return text + (r.crossed > 0 ? "" : "; no surface crosses itself");
@@ -92,9 +93,9 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
     const auto add = [&](const char* between, const std::string& before, const std::string& after, auto&& error_of) {
         const ErrorEstimate* worst = nullptr;
         Real largest = 0;
-        for (const ErrorEstimate& of : errors)
-            if (const Real error = std::abs(error_of(of)); error > largest) {
-                worst = &of;
+        for (const ErrorEstimate& estimate : errors)
+            if (const Real error = std::abs(error_of(estimate)); error > largest) {
+                worst = &estimate;
                 largest = error;
             }
         if (!worst) return;
@@ -106,15 +107,18 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
     };
     // `deflection` is an error relative to the displacements by deformation. `deformation` is the share of these
     // displacements in the motion. Their product is the error relative to the motion.
-    add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
-    const bool is_rigid_motion = std::ranges::any_of(
-        errors, [](const ErrorEstimate& of) { return of.deformation < 0.9 && !std::isnan(of.deflection); });
+    add("", "mesh ", "the motion",
+        [](const ErrorEstimate& estimate) { return estimate.deflection * estimate.deformation; });
+    const bool is_rigid_motion = std::ranges::any_of(errors, [](const ErrorEstimate& estimate) {
+        return estimate.deformation < 0.9 && !std::isnan(estimate.deflection);
+    });
     if (is_rigid_motion)
         add(", ", text.empty() ? "mesh " : "", "the deformation",
-            [](const ErrorEstimate& of) { return of.deflection; });
-    add(" and ", text.empty() ? "mesh " : "", "the largest stress", [](const ErrorEstimate& of) { return of.stress; });
-    add(", ", "steps ", "the motion", [](const ErrorEstimate& of) { return of.step; });
-    add(", ", "contact solver ", "the forces", [](const ErrorEstimate& of) { return of.contact; });
+            [](const ErrorEstimate& estimate) { return estimate.deflection; });
+    add(" and ", text.empty() ? "mesh " : "", "the largest stress",
+        [](const ErrorEstimate& estimate) { return estimate.stress; });
+    add(", ", "steps ", "the motion", [](const ErrorEstimate& estimate) { return estimate.step; });
+    add(", ", "contact solver ", "the forces", [](const ErrorEstimate& estimate) { return estimate.contact; });
     return text;
 }
 

@@ -53,13 +53,13 @@ std::string locking_text(const ElementsOfThinBody& elements) {
     return {};
 }
 
-ElementsOfThinBody elements_of_body(const Mesh& mesh, const StepCase& of) {
+ElementsOfThinBody elements_of_body(const Mesh& mesh, const BodyCase& body_case) {
     ElementsOfThinBody elements;
-    elements.add(of.material, of.body.element);
+    elements.add(body_case.material, body_case.body.element);
     std::map<int, std::size_t> zone_of;
-    for (const auto& [label, material] : of.labelled) {
+    for (const auto& [label, material] : body_case.labelled) {
         zone_of.emplace(label, elements.zones.size());
-        elements.add(material, of.body.element);
+        elements.add(material, body_case.body.element);
     }
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const auto zone = mesh.label.empty() ? zone_of.end() : zone_of.find(mesh.label[t]);
@@ -70,8 +70,9 @@ ElementsOfThinBody elements_of_body(const Mesh& mesh, const StepCase& of) {
 
 }  // namespace
 
-std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of) {
-    const ElementsOfThinBody elements = elements_of_body(mesh, of);
+std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary,
+                           const BodyCase& body_case) {
+    const ElementsOfThinBody elements = elements_of_body(mesh, body_case);
     std::vector<mesh::ThinPart> parts = mesh::thin_parts(mesh, boundary, elements.zones, elements.materials);
     std::erase_if(parts, [](const mesh::ThinPart& part) { return part.stiffness < reported_stiffness; });
     if (parts.empty()) return locking_text(elements);
@@ -88,7 +89,8 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
                                : "") +
            ": to reduce the excess to about " + percent(accepted_excess) + ", make the cells there " +
            short_text(finer, 2) + " times smaller in all directions" +
-           (of.body.element == ElementKind::linear ? ", or first set \"element\" of the body to \"smoothed\"" : "");
+           (body_case.body.element == ElementKind::linear ? ", or first set \"element\" of the body to \"smoothed\""
+                                                          : "");
 }
 
 }  // namespace skerry

@@ -13,6 +13,6 @@ namespace skerry {
 /// other parts that are too stiff, and gives a remedy. If no thin part is too stiff, names a kind of elements of the
 /// body that lock, because the material is nearly incompressible. Otherwise returns an empty text. `boundary` lists the
 /// boundary triangles of the mesh.
-std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of);
+std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const BodyCase& body_case);
 
 }  // namespace skerry

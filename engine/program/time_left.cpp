@@ -17,10 +17,10 @@ void TimeLeft::reach(double wall, double time) {
         samples_.push_back({wall, time});
 }
 
-double TimeLeft::left_at_pace_since(const Sample& before) const {
+double TimeLeft::estimate_from(const Sample& before) const {
     const Sample& now = samples_.back();
-    const double left = std::max(0.0, end_ - now.time);
-    return now.time > before.time ? left * (now.wall - before.wall) / (now.time - before.time)
+    const double simulated_time_left = std::max(0.0, end_ - now.time);
+    return now.time > before.time ? simulated_time_left * (now.wall - before.wall) / (now.time - before.time)
                                   : std::numeric_limits<double>::infinity();
 }
 
@@ -28,8 +28,8 @@ double TimeLeft::estimate() const {
     const auto half = std::partition_point(samples_.begin(), samples_.end() - 1, [&](const Sample& sample) {
         return sample.wall <= samples_.back().wall / 2;
     });
-    const double mean = left_at_pace_since(samples_.front());
-    const double recent = left_at_pace_since(half == samples_.begin() ? *half : *(half - 1));
+    const double mean = estimate_from(samples_.front());
+    const double recent = estimate_from(half == samples_.begin() ? *half : *(half - 1));
     return std::isfinite(recent) ? std::sqrt(mean * recent) : mean;
 }
 

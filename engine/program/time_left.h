@@ -25,7 +25,7 @@ private:
         double wall, time;  // wall time, simulated time [s]
     };
 
-    double left_at_pace_since(const Sample& before) const;
+    double estimate_from(const Sample& before) const;
 
     double end_;
     // wall times grow by 5 % or more over two intervals; the last entry is the present state

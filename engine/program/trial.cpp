@@ -21,23 +21,23 @@ void measure(World& world, const RunPlan& plan, SceneCost& cost) {
     const auto go_on = [&](const StepReport&) { return cpu_seconds() < until; };
     const Real end = plan.seconds - RunPlan::slack * plan.frame_step;
     const Stopwatch watch;
-    TimeLeft left(plan.seconds, world.time());
-    while (!cost.whole) {
+    TimeLeft time_left(plan.seconds, world.time());
+    while (!cost.complete) {
         const StepReport report =
             world.advance(std::clamp(plan.seconds - world.time(), 0.0, plan.longest_call()), go_on);
         cost.steps += static_cast<double>(report.steps);
-        left.reach(watch.seconds(), world.time());
+        time_left.reach(watch.seconds(), world.time());
         if (report.status == StepStatus::stopped) break;
         if (!report.ok()) {
             cost.failure = report.message();
             break;
         }
-        cost.whole = world.time() >= end;
+        cost.complete = world.time() >= end;
     }
     cost.simulated = world.time();
     cost.seconds = watch.seconds();
-    if (cost.whole) return;
-    if (const double estimate = left.estimate(); std::isfinite(estimate)) cost.seconds += estimate;
+    if (cost.complete) return;
+    if (const double estimate = time_left.estimate(); std::isfinite(estimate)) cost.seconds += estimate;
     cost.steps += plan.steps(world);
 }
 
@@ -46,8 +46,8 @@ void measure(World& world, const RunPlan& plan, SceneCost& cost) {
 SceneCost try_run(World& world, const RunPlan& plan, Real overlap) {
     SceneCost cost{.overlap = overlap};
     // duration of a step that is long enough to find the contacts but moves hardly anything [s]
-    constexpr Real hardly = 1e-9;
-    const StepReport first = world.advance(hardly);
+    constexpr Real tiny_step = 1e-9;
+    const StepReport first = world.advance(tiny_step);
     cost.overlap = std::max(overlap, first.max_penetration);
     cost.into_shell = first.max_gap_violation - first.max_penetration;
     cost.contacts = first.contacts;

@@ -8,11 +8,11 @@
 namespace skerry {
 
 struct SceneCost {
-    double seconds = 0;  // wall time of the whole run, measured or estimated [s]
-    double steps = 0;    // number of steps of the whole run, measured or estimated
-    Real simulated = 0;  // time that the trial simulated [s]
-    bool whole = false;  // true if the trial simulated the whole run
-    Real overlap = 0;    // deepest overlap at the start [m]
+    double seconds = 0;     // wall time of the whole run, measured or estimated [s]
+    double steps = 0;       // number of steps of the whole run, measured or estimated
+    Real simulated = 0;     // time that the trial simulated [s]
+    bool complete = false;  // true if the trial simulated the whole run
+    Real overlap = 0;       // deepest overlap at the start [m]
     // Largest depth by which surfaces at the start are closer than their contact distance, minus the largest overlap
     // [m].
     Real into_shell = 0;

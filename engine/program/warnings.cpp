@@ -13,22 +13,22 @@ namespace {
 bool warn_of_start(const RunResult& result, std::vector<std::string>& warnings) {
     const WorldReport& r = result.report;
     constexpr std::size_t most_named = 5;
-    std::size_t left = 0;
+    std::size_t unresolved = 0;
     for (const StartOverlap& overlap : r.start_overlaps)
-        if (!overlap.resolved && left++ < most_named)
+        if (!overlap.resolved && unresolved++ < most_named)
             warnings.push_back(
                 overlap.message() + " at the start: move the objects apart" +
                 (overlap.kind == OverlapKind::crossing ? ", or set settings.start_overlaps to \"resolve\"" : ""));
-    if (left > most_named)
-        warnings.push_back(grouped(left - most_named) +
+    if (unresolved > most_named)
+        warnings.push_back(grouped(unresolved - most_named) +
                            " more overlaps at the start: see the complete list in the file of --stats");
     const Real into_shell = r.start_gap_violation - r.start_penetration;
     const bool in_shell = into_shell > visible_share * result.mean_edge;
     if (in_shell) warnings.push_back(into_shell_text(into_shell));
-    if (left == 0 && r.start_penetration > visible_share * result.mean_edge)
+    if (unresolved == 0 && r.start_penetration > visible_share * result.mean_edge)
         warnings.push_back("surfaces overlap by " + with_unit(r.start_penetration, "m") +
                            " in the first step: move the bodies apart");
-    return left > 0 || in_shell;
+    return unresolved > 0 || in_shell;
 }
 
 std::string element_text(const std::string& body, Index element) {

@@ -64,7 +64,7 @@ nb::tuple read_surface(const std::string& path, Real scale) {
 
 /// Fills a surface with tetrahedra. The surface is given by a list of file names, or by arrays of nodes and triangles.
 /// Returns the mesh and notes about it.
-nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, IndexRows<3>>>& given, Real scale,
+nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, IndexRows<3>>>& surfaces, Real scale,
                std::optional<Real> edge, Real tolerance, bool cavities, Real seconds, Real bytes,
                const std::string& python) {
     const mesh::FillSettings settings{.scale = scale,
@@ -77,12 +77,12 @@ nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, 
         const nb::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
     };
-    if (const auto* names = std::get_if<0>(&given)) {
+    if (const auto* names = std::get_if<0>(&surfaces)) {
         const std::vector<std::filesystem::path> files(names->begin(), names->end());
         mesh::FilledMesh filled = without_gil([&] { return mesh::fill(files, settings, poll); });
         return nb::make_tuple(std::move(filled.mesh), filled.notes);
     }
-    const auto& [nodes, triangles] = std::get<1>(given);
+    const auto& [nodes, triangles] = std::get<1>(surfaces);
     const auto points = span_of(nodes);
     const auto rows = span_of(triangles);
     const SurfaceMesh surface{.nodes{points.begin(), points.end()}, .triangles{rows.begin(), rows.end()}};

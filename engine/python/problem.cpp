@@ -42,9 +42,9 @@ ContactProblem new_problem(const std::string& name, const std::string& descripti
     return problem;
 }
 
-nb::dict solve(const ContactProblem& problem, nb::handle given) {
+nb::dict solve(const ContactProblem& problem, nb::handle settings_object) {
     ProblemSettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     const ProblemSolution solution = without_gil([&] { return solve_problem(problem, settings); });
     nb::dict values;
     values["reaction"] = array_of(solution.reaction);

@@ -21,40 +21,40 @@ template <class T>
 struct VectorOf<std::vector<T>> : std::true_type {};
 
 template <class Struct>
-void read_members(nb::handle from, Struct& to);
+void read_members(nb::handle object, Struct& settings);
 template <class Struct>
 nb::dict dict_of(const Struct& settings);
 template <class Struct>
 nb::object instance_of(const Struct& settings);
 
-/// Reads members of a struct from the attributes of the Python object `from`. Errors name the object and the attribute.
+/// Reads members of a struct from the attributes of a Python object. Errors name the object and the attribute.
 class Reader {
 public:
-    explicit Reader(nb::handle from) : from_(from) {}
+    explicit Reader(nb::handle object) : object_(object) {}
 
     template <class T>
     void operator()(const char* name, T& value) const {
-        if (!nb::hasattr(from_, name)) return;
-        const nb::object given = nb::getattr(from_, name);
+        if (!nb::hasattr(object_, name)) return;
+        const nb::object attribute = nb::getattr(object_, name);
         if constexpr (OptionalOf<T>::value) {
-            if (given.is_none()) {
+            if (attribute.is_none()) {
                 value.reset();
                 return;
             }
             typename T::value_type inner{};
-            convert(name, given, inner);
+            convert(name, attribute, inner);
             value = inner;
         } else {
-            convert(name, given, value);
+            convert(name, attribute, value);
         }
     }
 
 private:
     template <class T>
-    void convert(const char* name, const nb::object& given, T& value) const {
+    void convert(const char* name, const nb::object& attribute, T& value) const {
         if constexpr (std::is_enum_v<T>) {
             std::string text, expected;
-            const bool is_text = nb::try_cast(given, text);
+            const bool is_text = nb::try_cast(attribute, text);
             for (const auto& [known, spelled] : EnumNames<T>::table) {
                 if (is_text && text == spelled) {
                     value = known;
@@ -62,45 +62,45 @@ private:
                 }
                 expected += (expected.empty() ? "'" : ", '") + std::string(spelled) + "'";
             }
-            complain(name, given, "one of " + expected);
+            complain(name, attribute, "one of " + expected);
         } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
             Vectors rows;
-            if (!nb::try_cast(given, rows)) complain(name, given, "an array of float64 of the shape (n, 3)");
+            if (!nb::try_cast(attribute, rows)) complain(name, attribute, "an array of float64 of the shape (n, 3)");
             value.assign(span_of(rows).begin(), span_of(rows).end());
         } else if constexpr (std::is_same_v<T, std::vector<std::array<Index, 3>>>) {
             IndexRows<3> rows;
-            if (!nb::try_cast(given, rows)) complain(name, given, "an array of int32 of the shape (n, 3)");
+            if (!nb::try_cast(attribute, rows)) complain(name, attribute, "an array of int32 of the shape (n, 3)");
             value.assign(span_of(rows).begin(), span_of(rows).end());
         } else if constexpr (std::is_same_v<T, TimeTable>) {
             std::vector<std::array<Real, 2>> pairs;
-            if (!nb::try_cast(given, pairs)) complain(name, given, "a list of pairs (time, value)");
+            if (!nb::try_cast(attribute, pairs)) complain(name, attribute, "a list of pairs (time, value)");
             value = table_of(pairs);
         } else if constexpr (std::is_same_v<T, std::array<StretchTerm, 3>>) {
             std::vector<std::array<Real, 2>> pairs;
-            if (!nb::try_cast(given, pairs) || pairs.size() > value.size())
-                complain(name, given, "up to three pairs (share, exponent)");
+            if (!nb::try_cast(attribute, pairs) || pairs.size() > value.size())
+                complain(name, attribute, "up to three pairs (share, exponent)");
             value = {};
             for (std::size_t p = 0; p < pairs.size(); ++p) value[p] = {pairs[p][0], pairs[p][1]};
         } else if constexpr (VectorOf<T>::value) {
-            if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
-                complain(name, given, "a tuple of objects of the class " + text_of_class<typename T::value_type>());
+            if (!nb::isinstance<nb::tuple>(attribute) && !nb::isinstance<nb::list>(attribute))
+                complain(name, attribute, "a tuple of objects of the class " + text_of_class<typename T::value_type>());
             value.clear();
-            for (const nb::handle item : given) convert(name, nb::borrow(item), value.emplace_back());
+            for (const nb::handle item : attribute) convert(name, nb::borrow(item), value.emplace_back());
         } else if constexpr (HasSettings<T>) {
-            if (nb::cast<std::string>(given.type().attr("__name__")) != class_name<T>)
-                complain(name, given, "an object of the class " + text_of_class<T>());
-            read_members(given, value);
+            if (nb::cast<std::string>(attribute.type().attr("__name__")) != class_name<T>)
+                complain(name, attribute, "an object of the class " + text_of_class<T>());
+            read_members(attribute, value);
         } else if constexpr (std::is_same_v<T, Vec3>) {
             std::array<Real, 3> numbers{};
-            if (!nb::try_cast(given, numbers)) complain(name, given, expected_of(value));
+            if (!nb::try_cast(attribute, numbers)) complain(name, attribute, expected_of(value));
             value = Vec3(numbers[0], numbers[1], numbers[2]);
         } else if constexpr (std::is_same_v<T, Mat3>) {
             std::array<std::array<Real, 3>, 3> rows{};
-            if (!nb::try_cast(given, rows)) complain(name, given, "three rows of three numbers");
+            if (!nb::try_cast(attribute, rows)) complain(name, attribute, "three rows of three numbers");
             for (std::size_t row = 0; row < 3; ++row)
                 value.row(static_cast<Index>(row)) = Vec3(rows[row][0], rows[row][1], rows[row][2]);
         } else {
-            if (!nb::try_cast(given, value)) complain(name, given, expected_of(value));
+            if (!nb::try_cast(attribute, value)) complain(name, attribute, expected_of(value));
         }
     }
     template <class T>
@@ -114,65 +114,65 @@ private:
     static std::string expected_of(std::uint32_t) { return "a whole number from 0 to 4294967295"; }
     static std::string expected_of(const std::string&) { return "a text"; }
 
-    [[noreturn]] void complain(const char* name, const nb::object& given, const std::string& expected) const {
+    [[noreturn]] void complain(const char* name, const nb::object& attribute, const std::string& expected) const {
         Complaint{.file = {},
-                  .object = nb::cast<std::string>(nb::hasattr(from_, "of") ? from_.attr("of")
-                                                                           : from_.type().attr("__name__")),
+                  .object = nb::cast<std::string>(nb::hasattr(object_, "of") ? object_.attr("of")
+                                                                             : object_.type().attr("__name__")),
                   .field = name,
-                  .found = nb::cast<std::string>(nb::repr(given)),
+                  .found = nb::cast<std::string>(nb::repr(attribute)),
                   .expected = expected,
                   .hint = {}}
             .raise();
     }
 
-    nb::handle from_;
+    nb::handle object_;
 };
 
 template <class Struct>
-void read_members(nb::handle from, Struct& to) {
-    for_each_setting(to, Reader(from));
+void read_members(nb::handle object, Struct& settings) {
+    for_each_setting(settings, Reader(object));
 }
 
 class Writer {
 public:
-    explicit Writer(nb::dict& to) : to_(to) {}
+    explicit Writer(nb::dict& values) : values_(values) {}
     template <class T>
     void operator()(const char* name, const T& value) const {
         if constexpr (OptionalOf<T>::value) {
             if (value) {
                 (*this)(name, *value);
             } else {
-                to_[name] = nb::none();
+                values_[name] = nb::none();
             }
         } else if constexpr (std::is_enum_v<T>) {
             for (const auto& [known, spelled] : EnumNames<T>::table)
-                if (known == value) to_[name] = nb::cast(std::string(spelled));
+                if (known == value) values_[name] = nb::cast(std::string(spelled));
         } else if constexpr (std::is_same_v<T, std::array<StretchTerm, 3>>) {
             nb::list pairs;
             for (const StretchTerm& term : value)
                 if (term.share != 0) pairs.append(nb::make_tuple(term.share, term.exponent));
-            to_[name] = nb::tuple(pairs);
+            values_[name] = nb::tuple(pairs);
         } else if constexpr (std::is_same_v<T, Vec3>) {
-            to_[name] = nb::make_tuple(value.x(), value.y(), value.z());
+            values_[name] = nb::make_tuple(value.x(), value.y(), value.z());
         } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
-            to_[name] = array_of(std::span<const Vec3>(value));
+            values_[name] = array_of(std::span<const Vec3>(value));
         } else if constexpr (std::is_same_v<T, std::vector<std::array<Index, 3>>>) {
-            to_[name] = array_of<Index>(std::span<const std::array<Index, 3>>(value), {3});
+            values_[name] = array_of<Index>(std::span<const std::array<Index, 3>>(value), {3});
         } else if constexpr (std::is_same_v<T, TimeTable>) {
-            to_[name] = object_of(value);
+            values_[name] = object_of(value);
         } else if constexpr (VectorOf<T>::value) {
             nb::list items;
             for (const auto& item : value) items.append(instance_of(item));
-            to_[name] = nb::tuple(items);
+            values_[name] = nb::tuple(items);
         } else if constexpr (HasSettings<T>) {
-            to_[name] = instance_of(value);
+            values_[name] = instance_of(value);
         } else {
-            to_[name] = nb::cast(value);
+            values_[name] = nb::cast(value);
         }
     }
 
 private:
-    nb::dict& to_;
+    nb::dict& values_;
 };
 
 template <class Struct>
@@ -202,66 +202,66 @@ TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs) {
     return keys;
 }
 
-void read(nb::handle from, Settings& to) {
-    read_members(from, to);
+void read(nb::handle object, Settings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, MaterialSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, MaterialSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, OrthotropicModuli& to) {
-    read_members(from, to);
+void read(nb::handle object, OrthotropicModuli& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, BodySettings& to) {
-    read_members(from, to);
+void read(nb::handle object, BodySettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, ColliderSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, ColliderSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, LoadSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, LoadSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, SurfaceSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, SurfaceSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, Pose& to) {
-    read_members(from, to);
+void read(nb::handle object, Pose& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, Motion& to) {
-    read_members(from, to);
+void read(nb::handle object, Motion& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, JointSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, JointSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, JointPassive& to) {
-    read_members(from, to);
+void read(nb::handle object, JointPassive& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, JointMotor& to) {
-    read_members(from, to);
+void read(nb::handle object, JointMotor& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, TieSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, TieSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, GasFilling& to) {
-    read_members(from, to);
+void read(nb::handle object, GasFilling& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, LiquidFilling& to) {
-    read_members(from, to);
+void read(nb::handle object, LiquidFilling& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, SpringSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, SpringSettings& settings) {
+    read_members(object, settings);
 }
-void read(nb::handle from, ProblemSettings& to) {
-    read_members(from, to);
+void read(nb::handle object, ProblemSettings& settings) {
+    read_members(object, settings);
 }
 
-Shape read_shape(nb::handle from) {
-    const std::string name = nb::cast<std::string>(from.type().attr("__name__"));
+Shape read_shape(nb::handle object) {
+    const std::string name = nb::cast<std::string>(object.type().attr("__name__"));
     std::optional<Shape> shape;
     std::string known;
     const auto try_shape = [&]<class Candidate>(Candidate candidate) {
         known += (known.empty() ? "" : ", ") + std::string(class_name<Candidate>);
         if (name != class_name<Candidate>) return;
-        read_members(from, candidate);
+        read_members(object, candidate);
         shape = std::move(candidate);
     };
     try_shape(Plane{});

@@ -19,26 +19,26 @@ namespace skerry::python {
 /// If a value has the wrong type, throws a SceneError that names the field and the object. The name of the object is
 /// its attribute `of`, or its class if it has none. Handles of materials and bodies are not read: Python passes them as
 /// arguments.
-void read(nb::handle from, Settings& to);
-void read(nb::handle from, MaterialSettings& to);
-void read(nb::handle from, OrthotropicModuli& to);
-void read(nb::handle from, BodySettings& to);
-void read(nb::handle from, ColliderSettings& to);
-void read(nb::handle from, LoadSettings& to);
-void read(nb::handle from, SurfaceSettings& to);
-void read(nb::handle from, Pose& to);
-void read(nb::handle from, Motion& to);
-void read(nb::handle from, JointSettings& to);
-void read(nb::handle from, JointPassive& to);
-void read(nb::handle from, JointMotor& to);
-void read(nb::handle from, TieSettings& to);
-void read(nb::handle from, GasFilling& to);
-void read(nb::handle from, LiquidFilling& to);
-void read(nb::handle from, SpringSettings& to);
-void read(nb::handle from, ProblemSettings& to);
+void read(nb::handle object, Settings& settings);
+void read(nb::handle object, MaterialSettings& settings);
+void read(nb::handle object, OrthotropicModuli& settings);
+void read(nb::handle object, BodySettings& settings);
+void read(nb::handle object, ColliderSettings& settings);
+void read(nb::handle object, LoadSettings& settings);
+void read(nb::handle object, SurfaceSettings& settings);
+void read(nb::handle object, Pose& settings);
+void read(nb::handle object, Motion& settings);
+void read(nb::handle object, JointSettings& settings);
+void read(nb::handle object, JointPassive& settings);
+void read(nb::handle object, JointMotor& settings);
+void read(nb::handle object, TieSettings& settings);
+void read(nb::handle object, GasFilling& settings);
+void read(nb::handle object, LiquidFilling& settings);
+void read(nb::handle object, SpringSettings& settings);
+void read(nb::handle object, ProblemSettings& settings);
 
 /// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.
-Shape read_shape(nb::handle from);
+Shape read_shape(nb::handle object);
 
 /// Returns the table of the pairs (time, value) that Python passes for a value that changes over time.
 TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs);

@@ -26,61 +26,61 @@ nb::object tuple_of_point(const std::optional<Vec3>& point) {
 nb::tuple values_of(const RecordedProbe& probe) {
     nb::dict values;
     const char* kind = std::visit(
-        [&]<class Kind>(const Kind& what) {
+        [&]<class Kind>(const Kind& object) {
             if constexpr (std::is_same_v<Kind, PointProbe>) {
-                values["body"] = what.body;
-                values["node"] = what.node;
-                values["weight"] = what.weight;
-                values["origin"] = tuple_of_point(what.origin);
+                values["body"] = object.body;
+                values["node"] = object.node;
+                values["weight"] = object.weight;
+                values["origin"] = tuple_of_point(object.origin);
                 return "PointProbe";
             } else if constexpr (std::is_same_v<Kind, BodyProbe>) {
-                values["body"] = what.body;
-                values["origin"] = tuple_of_point(what.origin);
+                values["body"] = object.body;
+                values["origin"] = tuple_of_point(object.origin);
                 return "BodyProbe";
             } else if constexpr (std::is_same_v<Kind, BodyForceProbe>) {
-                values["on"] = what.body;
-                values["by"] = what.by ? nb::cast(*what.by) : nb::none();
+                values["on"] = object.body;
+                values["by"] = object.by ? nb::cast(*object.by) : nb::none();
                 return "ForceProbe";
             } else if constexpr (std::is_same_v<Kind, ColliderForceProbe>) {
-                values["on"] = what.collider;
-                values["by"] = what.by ? nb::cast(*what.by) : nb::none();
+                values["on"] = object.collider;
+                values["by"] = object.by ? nb::cast(*object.by) : nb::none();
                 return "ForceProbe";
             } else if constexpr (std::is_same_v<Kind, ReactionProbe>) {
-                values["attachment"] = what.attachment;
+                values["attachment"] = object.attachment;
                 return "ReactionProbe";
             } else if constexpr (std::is_same_v<Kind, JointProbe>) {
-                values["joint"] = what.joint;
+                values["joint"] = object.joint;
                 return "JointProbe";
             } else if constexpr (std::is_same_v<Kind, TieProbe>) {
-                values["tie"] = what.tie;
+                values["tie"] = object.tie;
                 return "TieProbe";
             } else if constexpr (std::is_same_v<Kind, CableProbe>) {
-                values["cable"] = what.cable;
+                values["cable"] = object.cable;
                 return "CableProbe";
             } else if constexpr (std::is_same_v<Kind, CavityProbe>) {
-                values["cavity"] = what.cavity;
+                values["cavity"] = object.cavity;
                 return "CavityProbe";
             } else if constexpr (std::is_same_v<Kind, SpringProbe>) {
-                values["spring"] = what.spring;
+                values["spring"] = object.spring;
                 return "SpringProbe";
             } else if constexpr (std::is_same_v<Kind, EnergyProbe>) {
                 return "EnergyProbe";
             } else if constexpr (std::is_same_v<Kind, StressProbe>) {
-                values["body"] = what.body;
-                values["nodes"] = what.nodes;
+                values["body"] = object.body;
+                values["nodes"] = object.nodes;
                 return "StressProbe";
             } else if constexpr (std::is_same_v<Kind, VolumeProbe>) {
-                values["body"] = what.body;
+                values["body"] = object.body;
                 return "VolumeProbe";
             } else if constexpr (std::is_same_v<Kind, PoseProbe>) {
-                values["object"] = what.object;
+                values["object"] = object.object;
                 return "PoseProbe";
             } else if constexpr (std::is_same_v<Kind, VelocityProbe>) {
-                values["object"] = what.object;
+                values["object"] = object.object;
                 return "VelocityProbe";
             } else {
                 static_assert(std::is_same_v<Kind, NodesProbe>);
-                values["body"] = what.body;
+                values["body"] = object.body;
                 return "NodesProbe";
             }
         },

@@ -53,13 +53,13 @@ using ControlledObject = std::variant<std::monostate, BodyHandle, ColliderHandle
 
 ControlledObject object_of(const RolloutControl& control) {
     return std::visit(
-        [](const auto& what) -> ControlledObject {
-            if constexpr (requires { what.body; })
-                return what.body;
-            else if constexpr (requires { what.joint; })
-                return what.joint;
-            else if constexpr (requires { what.object; })
-                return std::visit([](auto handle) -> ControlledObject { return handle; }, what.object);
+        [](const auto& quantity) -> ControlledObject {
+            if constexpr (requires { quantity.body; })
+                return quantity.body;
+            else if constexpr (requires { quantity.joint; })
+                return quantity.joint;
+            else if constexpr (requires { quantity.object; })
+                return std::visit([](auto handle) -> ControlledObject { return handle; }, quantity.object);
             else
                 return std::monostate();
         },
@@ -88,8 +88,8 @@ std::string title_of(const World& world, const RolloutControl& control) {
            std::visit([&](auto handle) { return name_of_object(world, handle); }, object_of(control));
 }
 
-std::string numbered(const char* what, std::size_t number) {
-    return what + ("[" + std::to_string(number) + "]");
+std::string indexed_name(const char* list, std::size_t number) {
+    return list + ("[" + std::to_string(number) + "]");
 }
 
 Vec3 vector_at(std::span<const Real> values, std::size_t first) {
@@ -149,8 +149,8 @@ struct SetValue {
 
     void operator()(CableHandle cable) const {
         CableDrive drive = Cables(world).settings(cable).drive;
-        for (std::optional<TimeTable>* given : {&drive.tension, &drive.length, &drive.rate})
-            if (*given) *given = value;
+        for (std::optional<TimeTable>* table : {&drive.tension, &drive.length, &drive.rate})
+            if (*table) *table = value;
         Cables(world).set_drive(cable, drive);
     }
     void operator()(CavityHandle cavity) const {
@@ -220,13 +220,13 @@ std::size_t agreed_count(std::span<const World* const> worlds, const std::string
 void check_controls(std::span<const World* const> worlds, const RolloutSettings& settings) {
     for (std::size_t c = 0; c < settings.controls.size(); ++c) {
         const RolloutControl& control = settings.controls[c];
-        const std::string place = numbered("controls", c);
-        const std::size_t count = agreed_count(worlds, place + ": number of values per interval",
+        const std::string field = indexed_name("controls", c);
+        const std::size_t count = agreed_count(worlds, field + ": number of values per interval",
                                                [&](const World& world) { return number_count(world, control); });
-        const std::string title = place + " (" + title_of(*worlds[0], control) + ")";
+        const std::string title = field + " (" + title_of(*worlds[0], control) + ")";
         for (std::size_t earlier = 0; earlier < c; ++earlier)
             if (object_of(settings.controls[earlier]) == object_of(control))
-                refuse(title, {}, "an object that " + numbered("controls", earlier) + " also controls",
+                refuse(title, {}, "an object that " + indexed_name("controls", earlier) + " also controls",
                        "one control for each object");
         const std::size_t of_one = settings.intervals * count, of_all = worlds.size() * of_one;
         if (control.values.size() != of_one && control.values.size() != of_all)
@@ -251,7 +251,7 @@ void apply_controls(const RolloutSettings& settings, std::span<const std::size_t
         try {
             std::visit(ApplyControl{values, settings.dt, forces, world}, control.what);
         } catch (const SceneError& error) {
-            throw error_at({{}, numbered("controls", c), {}, {}, {}, {}}, error);
+            throw error_at({{}, indexed_name("controls", c), {}, {}, {}, {}}, error);
         }
     }
 }

@@ -160,14 +160,14 @@ private:
             }
             if (!status.ok()) return;
             ++status.intervals;
-            const std::size_t place = number * settings_.intervals + i;
-            result_.time[place] = world.time();
+            const std::size_t value_row = number * settings_.intervals + i;
+            result_.time[value_row] = world.time();
             for (std::size_t p = 0; p < probes.size(); ++p) {
                 row.clear();
                 add_forces(world, probes[p]);
                 put_row(world, probes[p], row);
                 std::ranges::copy(row, result_.series[p].values.begin() +
-                                           static_cast<std::ptrdiff_t>(place * result_.series[p].columns.size()));
+                                           static_cast<std::ptrdiff_t>(value_row * result_.series[p].columns.size()));
             }
             ++intervals_done_;
         }

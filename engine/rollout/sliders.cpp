@@ -85,40 +85,40 @@ Real value_of(const World& world, const Slider& slider, const SliderTarget& targ
     const auto* const control = std::get_if<PoseControl>(&target.control);
     if (!control) return value_at(course_of(world, target.control).keys, world.time());
     const MotionKey now = std::visit([&](auto object) { return world.pose(object); }, control->object);
-    const Mat3 turned = rotation_matrix(now.rotation) * rotation_matrix(target.start.rotation).transpose();
-    return slider.along.dot(now.position - target.start.position) + slider.about.dot(rotation_vector(turned));
+    const Mat3 rotation = rotation_matrix(now.rotation) * rotation_matrix(target.start.rotation).transpose();
+    return slider.along.dot(now.position - target.start.position) + slider.about.dot(rotation_vector(rotation));
 }
 
-/// Drives one target of a slider so that the value of the slider follows `course`. After its end the last value stays.
+/// Drives one target of a slider so that the value of the slider follows `values`. After its end the last value stays.
 struct FollowCourse {
     World& world;
     const Slider& slider;
     const SliderTarget& target;
-    const TimeTable& course;
+    const TimeTable& values;
 
     void operator()(const PoseControl& control) const {
-        const TimeKey &from = course.keys.front(), &to = course.keys.back();
+        const TimeKey &first = values.keys.front(), &last = values.keys.back();
         const auto key_at = [&](Real time, Real value) {
             const Pose pose = pose_at(slider, target.start, value);
             return Keyframe{time, pose.position, pose.rotation};
         };
         // A motion between two poses must turn by less than half a revolution. With a key halfway the motion may turn
         // by up to a revolution, which is the largest range of a slider.
-        const std::array keys{key_at((from.time + to.time) / 2, (from.value + to.value) / 2),
-                              key_at(to.time, to.value)};
+        const std::array keys{key_at((first.time + last.time) / 2, (first.value + last.value) / 2),
+                              key_at(last.time, last.value)};
         std::visit([&](auto object) { follow_poses(world, object, keys); }, control.object);
     }
     void operator()(const MotorSpeedControl& control) const {
         JointMotor motor;
-        for (const TimeKey& key : course.keys) motor.keys.push_back({.time = key.time, .speed = key.value});
+        for (const TimeKey& key : values.keys) motor.keys.push_back({.time = key.time, .speed = key.value});
         set_motor_target(world, control.joint, motor);
     }
     void operator()(const MotorPositionControl& control) const {
         JointMotor motor;
-        for (const TimeKey& key : course.keys) motor.keys.push_back({.time = key.time, .position = key.value});
+        for (const TimeKey& key : values.keys) motor.keys.push_back({.time = key.time, .position = key.value});
         set_motor_target(world, control.joint, motor);
     }
-    void operator()(const ValueControl& control) const { set_controlled_value(world, control, course); }
+    void operator()(const ValueControl& control) const { set_controlled_value(world, control, values); }
 };
 
 }  // namespace
@@ -149,8 +149,8 @@ void set_slider(World& world, const Slider& slider, Real value) {
         duration = std::max(duration, std::abs(value - value_of(world, slider, target)) / slider.fastest);
     const Real now = world.time();
     for (const SliderTarget& target : slider.targets) {
-        const TimeTable course({{now, value_of(world, slider, target)}, {now + duration, value}});
-        std::visit(FollowCourse{world, slider, target, course}, target.control);
+        const TimeTable values({{now, value_of(world, slider, target)}, {now + duration, value}});
+        std::visit(FollowCourse{world, slider, target, values}, target.control);
     }
 }
 

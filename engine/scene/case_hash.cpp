@@ -66,9 +66,9 @@ std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     return files_[file] = hash.value();
 }
 
-void CaseHasher::add_files(const Json& json, const std::filesystem::path& of, Hash& hash) {
+void CaseHasher::add_files(const Json& json, const std::filesystem::path& source_file, Hash& hash) {
     const auto add = [&](const Json& name) {
-        if (name.is_string()) hash.add(hash_of_file(of.parent_path() / name.get_ref<const std::string&>()));
+        if (name.is_string()) hash.add(hash_of_file(source_file.parent_path() / name.get_ref<const std::string&>()));
     };
     if (!json.is_structured()) return;
     constexpr std::string_view keys[] = {"include", "scene", "file", "surface", "visual"};
@@ -78,7 +78,7 @@ void CaseHasher::add_files(const Json& json, const std::filesystem::path& of, Ha
             if (value.is_array())
                 for (const Json& item : value) add(item);
         }
-        add_files(value, of, hash);
+        add_files(value, source_file, hash);
     }
 }
 

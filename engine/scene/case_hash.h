@@ -30,8 +30,8 @@ public:
 private:
     std::uint64_t hash_of_file(const std::filesystem::path& file);
     /// Adds to `hash` the hashes of all files that `json` names: scenes, meshes and surfaces. Names are relative to the
-    /// folder of the file `of`, from which `json` was read.
-    void add_files(const Json& json, const std::filesystem::path& of, Hash& hash);
+    /// folder of the file `source_file`, from which `json` was read.
+    void add_files(const Json& json, const std::filesystem::path& source_file, Hash& hash);
 
     std::filesystem::path file_;
     Json scene_;

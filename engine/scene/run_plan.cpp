@@ -25,8 +25,8 @@ long RunPlan::frames() const {
 double RunPlan::length_of(long frame) const {
     // If only rounding shortens the last frame, the frame keeps its full length, so that a longer run has a frame at
     // the same time.
-    const double left = seconds - static_cast<double>(frame) * frame_step;
-    return left > (1 - slack) * frame_step ? frame_step : left;
+    const double remaining = seconds - static_cast<double>(frame) * frame_step;
+    return remaining > (1 - slack) * frame_step ? frame_step : remaining;
 }
 
 bool RunPlan::even() const {
@@ -86,8 +86,8 @@ RunPlan plan_run(const Scene& scene, const std::filesystem::path& file, std::opt
     plan.probe_step = scene.probe_step;
     const double samples = std::min(plan.frame_step, plan.seconds) / scene.probe_step;
     expect_countable(file, "samples of the probes per frame", samples, "increase probe_step");
-    const bool whole = plan.even() && plan.frame_step <= plan.seconds;
-    plan.samples = static_cast<int>(whole ? std::lround(samples) : std::lround(std::ceil(samples)) + 1);
+    const bool in_whole_frames = plan.even() && plan.frame_step <= plan.seconds;
+    plan.samples = static_cast<int>(in_whole_frames ? std::lround(samples) : std::lround(std::ceil(samples)) + 1);
     return plan;
 }
 

@@ -39,18 +39,18 @@ std::string path_in_scene(const std::filesystem::path& file, const std::filesyst
     return (folder_of(file) / file.filename()).lexically_relative(folder_of(scene)).string();
 }
 
-void write_scene(const std::filesystem::path& to, const std::filesystem::path& from,
+void write_scene(const std::filesystem::path& target, const std::filesystem::path& source,
                  std::span<const std::string> assignments) {
-    Json json = read_json(from);
-    for (const std::string& assignment : assignments) assign(assignment, from, json);
-    for_each_path(read_scene_file(from, assignments), [&](const Place& place, const std::filesystem::path& path) {
-        if (place.file() == from) assign(place.path() + "=" + Json(path_in_scene(path, to)).dump(), from, json);
+    Json json = read_json(source);
+    for (const std::string& assignment : assignments) assign(assignment, source, json);
+    for_each_path(read_scene_file(source, assignments), [&](const Place& place, const std::filesystem::path& path) {
+        if (place.file() == source) assign(place.path() + "=" + Json(path_in_scene(path, target)).dump(), source, json);
     });
     if (const auto schema = json.find("$schema"); schema != json.end()) {
         const auto text = schema->get<std::string>();
-        if (text.find("://") == std::string::npos) *schema = path_in_scene(from.parent_path() / text, to);
+        if (text.find("://") == std::string::npos) *schema = path_in_scene(source.parent_path() / text, target);
     }
-    write_file(to, [&](std::ostream& out) { out << json.dump(4) << "\n"; });
+    write_file(target, [&](std::ostream& out) { out << json.dump(4) << "\n"; });
 }
 
 }  // namespace skerry

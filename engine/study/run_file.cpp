@@ -90,8 +90,8 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
 
 std::string variant_name(const StudyVariant& variant) {
     std::string name;
-    const auto add = [&](const char* what, const std::string& value) {
-        name += (name.empty() ? "" : "_") + (what + ("_" + value));
+    const auto add = [&](const char* setting, const std::string& value) {
+        name += (name.empty() ? "" : "_") + (setting + ("_" + value));
     };
     if (variant.refine != 0) add("refine", std::to_string(variant.refine));
     if (variant.step != 1) add("step", short_text(variant.step));

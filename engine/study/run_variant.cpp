@@ -46,13 +46,13 @@ std::vector<StudyLoad> loads_of(World& world) {
 
 class VariantRun {
 public:
-    VariantRun(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run)
+    VariantRun(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& progress, StudyRun& run)
         : scene_(load_scene(job.scene, job.overrides)),
           plan_(plan_run(scene_, job.scene, {})),
           recorder_(scene_),
           one_thread_(job.overrides.threads == 1),
           stop_(stop),
-          share_(share),
+          progress_(progress),
           run_(run) {
         perturb_start(job.variant.draw, scene_.world);
     }
@@ -90,7 +90,7 @@ private:
         const double before = cpu_clock(one_thread_);
         const StepReport report = scene_.world.advance(duration, [&](const StepReport&) { return !stop_; });
         run_.cpu_seconds += cpu_clock(one_thread_) - before;
-        share_ = std::min(1.0, scene_.world.time() / plan_.seconds);
+        progress_ = std::min(1.0, scene_.world.time() / plan_.seconds);
         recorder_.sample();
         if (report.ok()) return true;
         if (report.status != StepStatus::stopped) {
@@ -105,7 +105,7 @@ private:
     StudyRecorder recorder_;
     const bool one_thread_;
     const std::atomic<bool>& stop_;
-    std::atomic<double>& share_;
+    std::atomic<double>& progress_;
     StudyRun& run_;
 };
 
@@ -141,10 +141,10 @@ void perturb_start(int draw, World& world) {
     }
 }
 
-bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run) {
+bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& progress, StudyRun& run) {
     run.variant = job.variant;
     try {
-        return VariantRun(job, stop, share, run).run();
+        return VariantRun(job, stop, progress, run).run();
     } catch (const SceneError& error) {
         run.status = StudyRunStatus::refused;
         run.message = error.what();

@@ -76,7 +76,7 @@ public:
           lock_(settings.folder) {
         runs_.resize(plan_.size());
         inputs_.resize(plan_.size());
-        shares_ = std::vector<std::atomic<double>>(plan_.size());
+        progress_ = std::vector<std::atomic<double>>(plan_.size());
     }
 
     StudyResult run() {
@@ -222,7 +222,7 @@ private:
     /// Makes the runs with indices from `first` to `end` - 1 that are neither left out nor stored in the folder. Long
     /// runs are made first, one by one with all threads; then the others at the same time.
     void make_runs(std::size_t first, std::size_t end) {
-        std::vector<std::size_t> left;
+        std::vector<std::size_t> unfinished;
         for (std::size_t i = first; i < end; ++i) {
             if (!plan_[i].reason.empty()) continue;
             runs_[i].assignments = variant_assignments(scene_, plan_[i].variant, mean_step_);
@@ -230,17 +230,17 @@ private:
             if (read_stored(i))
                 finish(i);
             else
-                left.push_back(i);
+                unfinished.push_back(i);
         }
-        std::ranges::stable_sort(left, std::greater(), [&](std::size_t i) { return plan_[i].cost; });
+        std::ranges::stable_sort(unfinished, std::greater(), [&](std::size_t i) { return plan_[i].cost; });
         double total = 0;
-        for (const std::size_t i : left) total += plan_[i].cost;
-        auto begin = left.begin();
-        for (; begin != left.end() && gets_all_threads(plan_[*begin].cost, total, threads_) && !stop_; ++begin) {
+        for (const std::size_t i : unfinished) total += plan_[i].cost;
+        auto begin = unfinished.begin();
+        for (; begin != unfinished.end() && gets_all_threads(plan_[*begin].cost, total, threads_) && !stop_; ++begin) {
             total -= plan_[*begin].cost;
             run_together({begin, begin + 1}, threads_);
         }
-        if (begin != left.end() && !stop_) run_together({begin, left.end()}, 1);
+        if (begin != unfinished.end() && !stop_) run_together({begin, unfinished.end()}, 1);
     }
 
     /// Makes runs at the same time, each with this number of threads.
@@ -275,9 +275,9 @@ private:
         job.overrides.assignments = runs_[i].assignments;
         job.overrides.fill_python = settings_.fill_python;
         require_unchanged(i);
-        const bool whole = run_variant(job, stop_, shares_[i], runs_[i]);
+        const bool completed = run_variant(job, stop_, progress_[i], runs_[i]);
         --running_;
-        if (!whole) return;
+        if (!completed) return;
         require_unchanged(i);
         store(i);
         finish(i);
@@ -298,7 +298,7 @@ private:
     }
 
     void finish(std::size_t i) {
-        shares_[i] = 1;
+        progress_[i] = 1;
         ++done_;
     }
 
@@ -310,7 +310,7 @@ private:
             if (!plan_[i].reason.empty()) continue;
             ++progress.runs;
             cost += plan_[i].cost;
-            done += plan_[i].cost * shares_[i];
+            done += plan_[i].cost * progress_[i];
         }
         // Before the first run has ended, the plan still contains runs that will not fit into the budget, so the total
         // cost is limited by the budget.
@@ -333,8 +333,8 @@ private:
     Real mean_step_ = 0;     // mean step of the unchanged scene [s]
     // The following three vectors are indexed like `plan_`.
     std::vector<StudyRun> runs_;
-    std::vector<std::string> inputs_;          // texts that identify all inputs of a run
-    std::vector<std::atomic<double>> shares_;  // simulated share of each run's duration, from 0 to 1
+    std::vector<std::string> inputs_;            // texts that identify all inputs of a run
+    std::vector<std::atomic<double>> progress_;  // simulated share of each run's duration, from 0 to 1
     std::atomic<bool> is_lost_{false};
     std::string lost_;  // message about the first run that could not be stored; empty if there is none
     std::atomic<int> done_{0}, running_{0};

@@ -29,16 +29,16 @@ bool starts_with_any(std::string_view text, std::span<const std::string_view> st
 
 /// True for the quantities of a default probe for which the study makes columns; it drops all others.
 bool is_default(std::string_view quantity) {
-    static constexpr std::array<std::string_view, 3> kept{"displacement_", "force_", "largest_von_mises"};
-    return starts_with_any(quantity, kept);
+    static constexpr std::array<std::string_view, 3> recorded{"displacement_", "force_", "largest_von_mises"};
+    return starts_with_any(quantity, recorded);
 }
 
 /// False for quantities that repeat others or depend on the mesh only: a position is a displacement with an offset, an
 /// impulse is a force times a duration, and finer meshes have more contacts.
 bool is_main(std::string_view quantity) {
-    static constexpr std::array<std::string_view, 5> left_out{"position_", "impulse_", "contacts", "sticking",
-                                                              "sliding"};
-    return !starts_with_any(quantity, left_out);
+    static constexpr std::array<std::string_view, 5> secondary{"position_", "impulse_", "contacts", "sticking",
+                                                               "sliding"};
+    return !starts_with_any(quantity, secondary);
 }
 
 Real diagonal(const World& world, std::span<const BodyHandle> bodies) {
@@ -54,21 +54,21 @@ Real diagonal(const World& world, std::span<const BodyHandle> bodies) {
 /// Body of a probe, if it has one.
 std::optional<BodyHandle> body_of(const RecordedProbe& probe) {
     return std::visit(
-        [](const auto& what) -> std::optional<BodyHandle> {
-            if constexpr (requires { what.body; })
-                return what.body;
+        [](const auto& object) -> std::optional<BodyHandle> {
+            if constexpr (requires { object.body; })
+                return object.body;
             else
                 return {};
         },
         probe.what);
 }
 
-/// True if the scene has a probe of the given kind for which `same` returns true.
+/// True if the scene has a probe of the given kind for which `matches` returns true.
 template <class Kind>
-bool has(const Scene& scene, auto same) {
+bool has_probe(const Scene& scene, auto matches) {
     return std::ranges::any_of(scene.recorded, [&](const RecordedProbe& probe) {
-        const Kind* const what = std::get_if<Kind>(&probe.what);
-        return what && same(*what);
+        const Kind* const object = std::get_if<Kind>(&probe.what);
+        return object && matches(*object);
     });
 }
 
@@ -100,25 +100,25 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
     std::set<std::string> names = probe_names;  // names of probes and bodies
     for (const BodyHandle body : world.bodies()) names.insert(world.name(body));
     for (const BodyHandle body : bodies_in_order(world)) {
-        std::string shown = world.name(body);
-        if (shown == "bodies" || probe_names.contains(shown)) {  // statistics of all bodies use "bodies"
-            do shown = "body " + shown;
-            while (!names.insert(shown).second);
+        std::string display_name = world.name(body);
+        if (display_name == "bodies" || probe_names.contains(display_name)) {  // statistics of all bodies use "bodies"
+            do display_name = "body " + display_name;
+            while (!names.insert(display_name).second);
         }
         const auto add = [&](decltype(RecordedProbe::what) what) {
             probes.push_back({{"default probe " + std::to_string(probes.size()), std::move(what)},
-                              shown,
+                              display_name,
                               body,
                               std::ranges::find(attached, body) == attached.end()});
         };
-        if (!has<BodyProbe>(scene, [&](const BodyProbe& p) { return p.body == body; })) add(BodyProbe{body});
-        if (!has<BodyForceProbe>(scene, [&](const BodyForceProbe& p) { return p.body == body && !p.by; }))
+        if (!has_probe<BodyProbe>(scene, [&](const BodyProbe& p) { return p.body == body; })) add(BodyProbe{body});
+        if (!has_probe<BodyForceProbe>(scene, [&](const BodyForceProbe& p) { return p.body == body && !p.by; }))
             add(BodyForceProbe{body});
         if (world.dynamics(body) != BodyDynamics::rigid &&
-            !has<StressProbe>(scene, [&](const StressProbe& p) { return p.body == body && p.nodes.empty(); }))
+            !has_probe<StressProbe>(scene, [&](const StressProbe& p) { return p.body == body && p.nodes.empty(); }))
             add(StressProbe{body});
     }
-    if (!has<EnergyProbe>(scene, [](const EnergyProbe&) { return true; }))
+    if (!has_probe<EnergyProbe>(scene, [](const EnergyProbe&) { return true; }))
         probes.push_back({{"default probe " + std::to_string(probes.size()), EnergyProbe{}}, "energy"});
     return probes;
 }
@@ -148,11 +148,11 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
         const std::span<const Vec3> start = world_.positions(stress->body);
         stresses_.push_back({c, *stress, {start.begin(), start.end()}});
     };
-    const auto add = [&](const RecordedProbe& probe, const std::string& shown, bool reported) {
+    const auto add = [&](const RecordedProbe& probe, const std::string& display_name, bool reported) {
         const std::optional<BodyHandle> body = body_of(probe);
         StudyColumn column{
             .what = recorder_.columns()[c], .size = body ? diagonal(world_, {&*body, 1}) : size_, .reported = reported};
-        column.what.probe = shown;
+        column.what.probe = display_name;
         add_stress(probe);
         sources_.push_back({std::move(column), Part::mean, {c}, body ? world_.name(*body) : std::string()});
     };
@@ -161,29 +161,30 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
             add(probe, probe.name, is_main(recorder_.columns()[c].quantity));
     for (const DefaultProbe& added : defaults_)
         for (; c < recorder_.columns().size() && recorder_.columns()[c].probe == added.probe.name; ++c) {
-            const SeriesColumn& what = recorder_.columns()[c];
+            const SeriesColumn& series = recorder_.columns()[c];
             if (added.body == BodyHandle{}) {
                 add(added.probe, added.shown, true);
                 continue;
             }
-            if (!is_default(what.quantity)) continue;
-            if (!many_bodies_ || (keep_bodies && what.quantity.starts_with("displacement_")))
+            if (!is_default(series.quantity)) continue;
+            if (!many_bodies_ || (keep_bodies && series.quantity.starts_with("displacement_")))
                 add(added.probe, added.shown, !many_bodies_);
             if (!added.free) continue;
-            auto same = std::ranges::find(of_bodies, what.quantity, [](const auto& e) { return e.first.quantity; });
-            if (same == of_bodies.end()) same = of_bodies.insert(same, {{of_all, what.quantity, what.unit}, {}});
-            same->second.push_back(c);
+            auto found = std::ranges::find(of_bodies, series.quantity, [](const auto& e) { return e.first.quantity; });
+            if (found == of_bodies.end()) found = of_bodies.insert(found, {{of_all, series.quantity, series.unit}, {}});
+            found->second.push_back(c);
         }
-    for (const auto& [what, from] : of_bodies)
+    for (const auto& [series, columns_of_bodies] : of_bodies)
         for (const auto& [part, name] :
              {std::pair{Part::mean, "mean_"}, std::pair{Part::least, "least_"}, std::pair{Part::largest, "largest_"}}) {
-            if (from.size() < 2) continue;
-            const bool doubled = what.quantity.starts_with(name);
-            sources_.push_back({{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit},
-                                 .size = size_,
-                                 .is_statistic = true},
-                                part,
-                                from});
+            if (columns_of_bodies.size() < 2) continue;
+            const bool doubled = series.quantity.starts_with(name);
+            sources_.push_back(
+                {{.what = {series.probe, doubled ? series.quantity : name + series.quantity, series.unit},
+                  .size = size_,
+                  .is_statistic = true},
+                 part,
+                 columns_of_bodies});
         }
 }
 
@@ -199,8 +200,8 @@ void StudyRecorder::sample() {
         const std::vector<Index>& nodes = stress.probe.nodes;
         const std::vector<Mat3> values =
             nodes.empty() ? world_.node_stress(stress.probe.body) : world_.node_stress(stress.probe.body, nodes);
-        const auto most = std::ranges::max_element(values, {}, von_mises);
-        const auto number = static_cast<std::size_t>(most - values.begin());
+        const auto largest = std::ranges::max_element(values, {}, von_mises);
+        const auto number = static_cast<std::size_t>(largest - values.begin());
         stress.node = nodes.empty() ? static_cast<Index>(number) : nodes[number];
     }
 }
@@ -225,18 +226,18 @@ std::vector<StudyColumn> StudyRecorder::columns() const {
         for (std::size_t r = 0; r < recorder_.row_count(); ++r) {
             const std::span<const Real> row = recorder_.row(r);
             Real sum = 0, least = infinity, largest = -infinity;
-            for (const std::size_t c : source.from) {
+            for (const std::size_t c : source.recorder_columns) {
                 sum += row[c];
                 least = std::min(least, row[c]);
                 largest = std::max(largest, row[c]);
             }
-            const Real mean = sum / static_cast<Real>(source.from.size());
+            const Real mean = sum / static_cast<Real>(source.recorder_columns.size());
             column.values.push_back(source.part == Part::mean || std::isnan(mean) ? mean
                                     : source.part == Part::least                  ? least
                                                                                   : largest);
         }
-        const auto stress = std::ranges::find(stresses_, source.from.front(), &Stress::column);
-        if (source.from.size() > 1 || stress == stresses_.end() || stress->node == no_index) continue;
+        const auto stress = std::ranges::find(stresses_, source.recorder_columns.front(), &Stress::column);
+        if (source.recorder_columns.size() > 1 || stress == stresses_.end() || stress->node == no_index) continue;
         column.node = stress->node;
         column.place = stress->start[static_cast<std::size_t>(stress->node)];
     }

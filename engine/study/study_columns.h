@@ -33,8 +33,8 @@ private:
     struct Source {
         StudyColumn column;
         Part part = Part::mean;
-        std::vector<std::size_t> from;  // columns of the recorder
-        std::string body{};             // see bodies()
+        std::vector<std::size_t> recorder_columns;
+        std::string body{};  // see bodies()
     };
     /// A column with the largest stress of a body or a part of it, and the node with the largest value in the run so
     /// far.

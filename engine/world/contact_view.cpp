@@ -69,16 +69,16 @@ void view_contacts(WorldState& world) {
     Column<Index>& rows = record.contact_rows;
     merge_contacts(of_step, resting, rows);
     record.contact_view.resize(rows.size());
-    const Real kick = world.scratch.parameters.kick, whole = world.clock.step_before;
+    const Real kick_time = world.scratch.parameters.kick_time, step_time = world.clock.step_before;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const bool rests = rows[i] < 0;
         const ContactTable& table = rests ? resting.contact : of_step;
         const auto row = static_cast<std::size_t>(rests ? ~rows[i] : rows[i]);
         Contact& contact = record.contact_view[i] = contact_at(world.model, table, row);
-        if (rests) contact.impulse *= kick / resting.step[row];
-        const bool kicked =
+        if (rests) contact.impulse *= kick_time / resting.step[row];
+        const bool acts_for_kick =
             rests || is_kicked(world.model, table.first_body[row]) || is_kicked(world.model, table.second_body[row]);
-        contact.seconds = kicked ? kick : whole;
+        contact.seconds = acts_for_kick ? kick_time : step_time;
     }
     record.contact_view_is_current = true;
 }

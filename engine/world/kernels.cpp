@@ -19,24 +19,24 @@ std::string listed(std::span<const KernelSet> sets) {
 
 }  // namespace
 
-const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view wanted) {
+const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view name) {
     const Kernels* last = nullptr;
     std::string hint;
     for (const KernelSet& set : sets) {
         if (set.runs) last = set.kernels;
-        if (wanted != set.kernels->instruction_set) continue;
+        if (name != set.kernels->instruction_set) continue;
         if (set.runs) return *set.kernels;
         hint =
             "this build contains this instruction set, but the processor or the operating system does not support it";
     }
-    if (wanted.empty()) return *last;
-    refuse("environment", "SKERRY_INSTRUCTION_SET", "\"" + std::string(wanted) + "\"", "one of " + listed(sets), hint);
+    if (name.empty()) return *last;
+    refuse("environment", "SKERRY_INSTRUCTION_SET", "\"" + std::string(name) + "\"", "one of " + listed(sets), hint);
 }
 
 const Kernels& kernels() {
     static const Kernels& chosen = []() -> const Kernels& {
-        const char* const wanted = std::getenv("SKERRY_INSTRUCTION_SET");
-        return choose_kernels(kernel_sets(), wanted != nullptr ? wanted : "");
+        const char* const name = std::getenv("SKERRY_INSTRUCTION_SET");
+        return choose_kernels(kernel_sets(), name != nullptr ? name : "");
     }();
     return chosen;
 }

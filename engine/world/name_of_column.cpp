@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-std::string name_of_column(void* world, const void* place) {
+std::string name_of_column(void* world, const void* address) {
     WorldState& w = *static_cast<WorldState*>(world);
     std::vector<AnyTable> tables = w.model.tables();
     tables.emplace_back(w.cache.warm_start, "warm_start");
@@ -18,8 +18,8 @@ std::string name_of_column(void* world, const void* place) {
     tables.emplace_back(w.scratch.regions, "regions");
     for (const AnyTable& table : tables)
         for (const ColumnInfo& info : table.columns())
-            if (table.column(info).is(place)) return std::string(table.name()) + "." + info.name;
-    const auto offset = static_cast<const std::byte*>(place) - static_cast<const std::byte*>(world);
+            if (table.column(info).is(address)) return std::string(table.name()) + "." + info.name;
+    const auto offset = static_cast<const std::byte*>(address) - static_cast<const std::byte*>(world);
     return "the column " + std::to_string(offset) + " bytes into WorldState";
 }
 

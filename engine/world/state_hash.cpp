@@ -26,11 +26,11 @@ void add_row(Hash& hash, const T& row) {
 /// 64-bit numbers.
 void add_members(Hash& hash, const RowType& type, const std::byte* row) {
     for (const Member& member : type.members()) {
-        const std::byte* const place = row + member.offset;
+        const std::byte* const address = row + member.offset;
         if (member.type->values > 0)
-            hash.add(static_cast<std::uint64_t>(number_at(place, member.type->number)));
+            hash.add(static_cast<std::uint64_t>(number_at(address, member.type->number)));
         else
-            hash.add(place, member.type->bytes);
+            hash.add(address, member.type->bytes);
     }
 }
 

@@ -36,8 +36,9 @@ struct Tuning {
     bool operator==(const Tuning&) const = default;
 };
 
-/// Replaces backend and number of threads by those that `wanted` gives. Throws SceneError if they are out of range.
-void use(const LoadSettings& wanted, Settings& settings);
+/// Replaces backend and number of threads by those that `load_settings` gives. Throws SceneError if they are out of
+/// range.
+void use(const LoadSettings& load_settings, Settings& settings);
 /// Makes a world with the given tuning. Throws SceneError if a value is out of range.
 World tuned_world(const Settings& settings, const Tuning& tuning);
 

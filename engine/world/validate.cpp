@@ -126,11 +126,11 @@ void require_table(const std::string& object, const std::string& field, const Ti
     if (table.keys.empty()) refuse(object, field, "no key", "at least one key");
     for (std::size_t k = 0; k < table.keys.size(); ++k) {
         const TimeKey& key = table.keys[k];
-        const std::string place = field + "[" + std::to_string(k) + "]";
-        if (!std::isfinite(key.value)) refuse(object, place + ".value", shown(key.value), "a finite number");
-        if (!std::isfinite(key.time)) refuse(object, place + ".time", shown(key.time), "a finite number (s)");
+        const std::string key_name = field + "[" + std::to_string(k) + "]";
+        if (!std::isfinite(key.value)) refuse(object, key_name + ".value", shown(key.value), "a finite number");
+        if (!std::isfinite(key.time)) refuse(object, key_name + ".time", shown(key.time), "a finite number (s)");
         if (k > 0 && !(key.time > table.keys[k - 1].time))
-            refuse(object, place + ".time", short_text(key.time, 9) + " s",
+            refuse(object, key_name + ".time", short_text(key.time, 9) + " s",
                    "a time after that of the key before, " + short_text(table.keys[k - 1].time, 9) + " s");
     }
 }

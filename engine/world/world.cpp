@@ -106,9 +106,9 @@ void WorldState::settle() {
 }
 
 void WorldState::erase_gone_rows() {
-    const RowMoves moves = row_moves(model, edits.bodies_gone, edits.colliders_gone);
-    edits.bodies_gone.clear();
-    edits.colliders_gone.clear();
+    const RowMoves moves = row_moves(model, edits.removed_bodies, edits.removed_colliders);
+    edits.removed_bodies.clear();
+    edits.removed_colliders.clear();
     if (!moves.any()) return;
     erase_gone(moves, model.nodes.body, cache);
     erase_gone(moves, model.nodes.body, scratch.contacts);
@@ -134,9 +134,9 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
-void use(const LoadSettings& wanted, Settings& settings) {
-    settings.backend = wanted.backend.value_or(settings.backend);
-    settings.threads = wanted.threads.value_or(settings.threads);
+void use(const LoadSettings& load_settings, Settings& settings) {
+    settings.backend = load_settings.backend.value_or(settings.backend);
+    settings.threads = load_settings.threads.value_or(settings.threads);
     validate(settings);
 }
 
@@ -155,29 +155,29 @@ World World::clone(const LoadSettings& settings) const {
     return copy_of_settled(*state_, settings);
 }
 
-World copy_of_settled(const WorldState& from, const LoadSettings& wanted) {
-    Settings settings = from.model.settings;
-    use(wanted, settings);
-    World copy = tuned_world(settings, from.model.tuning);
+World copy_of_settled(const WorldState& source, const LoadSettings& load_settings) {
+    Settings settings = source.model.settings;
+    use(load_settings, settings);
+    World copy = tuned_world(settings, source.model.tuning);
     WorldState& to = WorldAccess::state_of(copy);
     settings.backend = to.model.settings.backend;  // `automatic` was replaced by the backend in use
-    to.model = from.model;
+    to.model = source.model;
     to.model.settings = settings;
-    to.clock = from.clock;
-    to.cache = from.cache;
-    to.scratch.parameters = from.scratch.parameters;
-    to.scratch.findings = from.scratch.findings;
-    to.scratch.contacts = from.scratch.contacts;
-    to.record.counters = from.record.counters;
-    to.record.limits = from.record.limits;
-    to.record.self_crossings = from.record.self_crossings;
-    to.record.balance = from.record.balance;
-    to.record.held = from.record.held;
-    to.record.start_overlaps = from.record.start_overlaps;
-    to.record.start_moves = from.record.start_moves;
-    to.record.forces = from.record.forces;
-    to.record.contact_view = from.record.contact_view;
-    to.record.contact_view_is_current = from.record.contact_view_is_current;
+    to.clock = source.clock;
+    to.cache = source.cache;
+    to.scratch.parameters = source.scratch.parameters;
+    to.scratch.findings = source.scratch.findings;
+    to.scratch.contacts = source.scratch.contacts;
+    to.record.counters = source.record.counters;
+    to.record.limits = source.record.limits;
+    to.record.self_crossings = source.record.self_crossings;
+    to.record.balance = source.record.balance;
+    to.record.held = source.record.held;
+    to.record.start_overlaps = source.record.start_overlaps;
+    to.record.start_moves = source.record.start_moves;
+    to.record.forces = source.record.forces;
+    to.record.contact_view = source.record.contact_view;
+    to.record.contact_view_is_current = source.record.contact_view_is_current;
     return copy;
 }
 
@@ -236,7 +236,7 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     } else if (body.dynamics == BodyDynamics::automatic) {
         // Removed bodies must not limit the step that choose_dynamics estimates, so settle() erases them. It is not
         // called without need, because it also discards Model::known_elements, which save time for equal meshes.
-        if (!state.edits.bodies_gone.empty()) state.settle();
+        if (!state.edits.removed_bodies.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
     }
@@ -270,7 +270,7 @@ void revise_choices(World& world, WorldState& state, BodyHandle added) {
     Model& model = state.model;
     if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
         return;
-    if (!state.edits.bodies_gone.empty()) state.settle();
+    if (!state.edits.removed_bodies.empty()) state.settle();
     DynamicsEstimate now;
     for (Index row = outdated_choice(model, now); row != no_index; row = outdated_choice(model, now)) {
         const BodyHandle body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
@@ -355,7 +355,7 @@ void World::remove(BodyHandle body) {
     model.body_map.forget(body);
     OpenEdits& edits = state_->edits;
     edits.places.add_body(model, static_cast<std::size_t>(row));
-    mark(row, edits.bodies_gone);
+    mark(row, edits.removed_bodies);
     edits.rows = edits.elements = true;
 }
 
@@ -368,9 +368,9 @@ void World::remove(ColliderHandle collider) {
     erase_rows_joining(ColumnRole::collider, row, state_->model);
     OpenEdits& edits = state_->edits;
     edits.places.add_collider(state_->model, static_cast<std::size_t>(row), time());
-    mark(row, edits.colliders_gone);
+    mark(row, edits.removed_colliders);
     if (const Index body = state_->model.colliders.body[static_cast<std::size_t>(row)]; body != no_index)
-        mark(body, edits.bodies_gone);
+        mark(body, edits.removed_bodies);
     state_->model.collider_map.forget(collider);
     edits.rows = true;
 }
@@ -400,9 +400,9 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
-    const Real kick = parameters.kick;  // contacts of the last step are still reported with this value
+    const Real kick_time = parameters.kick_time;  // contacts of the last step are still reported with this value
     parameters = step_parameters(state_->model.settings, state_->model.tuning);
-    parameters.kick = kick;
+    parameters.kick_time = kick_time;
     state_->record.balance.close();
     state_->model.wake_all();
 }

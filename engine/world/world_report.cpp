@@ -51,9 +51,9 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     const VolumeRatios ratios = element_volume_ratios(elements, blocks, model.nodes.position, folded);
     if (ratios.near_inversion == 0) return;
     if (report.folded == 0) {
-        const Index place = ratios.item - blocks.begin * static_cast<Index>(element_lanes);
+        const Index element = ratios.item - blocks.begin * static_cast<Index>(element_lanes);
         report.folded_body = model.body_records[body].name;
-        report.folded_element = model.body_records[body].element_tetrahedra[static_cast<std::size_t>(place)].front();
+        report.folded_element = model.body_records[body].element_tetrahedra[static_cast<std::size_t>(element)].front();
     }
     report.folded += ratios.near_inversion;
 }
@@ -86,11 +86,11 @@ Real energy_of_rounding(const Model& model) {
 
 std::string DynamicsChoice::message() const {
     const DynamicsEstimate& e = estimate;
-    const auto way = [](Real cost, Real step) {
+    const auto cost_text = [](Real cost, Real step) {
         return short_text(cost) + " s of CPU time per simulated second, in steps of " + short_text(step) + " s";
     };
     const std::string implicit =
-        way(e.implicit_cost, e.implicit_step) +
+        cost_text(e.implicit_cost, e.implicit_step) +
         (e.deforming_step > e.implicit_step ? ", with deformation steps of " + short_text(e.deforming_step) + " s"
                                             : "");
     const bool is_implicit = dynamics == BodyDynamics::implicit_elastic;
@@ -101,8 +101,8 @@ std::string DynamicsChoice::message() const {
     if (e.reason == DynamicsReason::plasticity) return text + ", because a material of the body yields";
     if (e.reason == DynamicsReason::strain)
         return text + ", because the body may deform by " + short_text(100 * e.strain) + " %";
-    text += ": " + (is_implicit ? implicit : way(e.explicit_cost, e.explicit_step)) +
-            (is_implicit ? "; explicit: " + way(e.explicit_cost, e.explicit_step) : "; implicit: " + implicit);
+    text += ": " + (is_implicit ? implicit : cost_text(e.explicit_cost, e.explicit_step)) +
+            (is_implicit ? "; explicit: " + cost_text(e.explicit_cost, e.explicit_step) : "; implicit: " + implicit);
     if (is_implicit && e.damped_above > 0)
         text += "; vibrations above " + short_text(e.damped_above) + " Hz are damped";
     return text;
@@ -125,31 +125,32 @@ std::string WorldReport::distrust() const {
 }
 
 std::string StepReport::message() const {
-    const std::string who = body_name.empty() ? "a body" : "body '" + body_name + "'";
-    const std::string where = (node < 0 ? "" : ", node " + std::to_string(node)) +
-                              (element < 0 ? "" : ", element " + std::to_string(element));
+    const std::string body_text = body_name.empty() ? "a body" : "body '" + body_name + "'";
+    const std::string element_text = (node < 0 ? "" : ", node " + std::to_string(node)) +
+                                     (element < 0 ? "" : ", element " + std::to_string(element));
     switch (status) {
         case StepStatus::ok:
             return {};
         case StepStatus::stopped:
             return "stopped on request, between two steps";
         case StepStatus::not_finite:
-            return "the step was not taken: " + who + where +
+            return "the step was not taken: " + body_text + element_text +
                    " would get a velocity that is not finite; check the loads, masses and initial velocities of the "
                    "body";
         case StepStatus::too_fast:
-            return "the step was not taken: " + who + where + " would deform by a strain of " + short_text(value) +
+            return "the step was not taken: " + body_text + element_text + " would deform by a strain of " +
+                   short_text(value) +
                    " in one step, even in 1/1024 of the stable step; lower the velocities and loads of the body";
         case StepStatus::too_far:
-            return "the step was not taken: " + who +
+            return "the step was not taken: " + body_text +
                    " is so far from the origin that neighbouring representable positions are " + short_text(value) +
                    " of its mean edge length apart; use a local frame whose origin is near the bodies";
         case StepStatus::unsolved:
-            return "the step was not taken: Newton's method for large strain did not converge for " + who +
+            return "the step was not taken: Newton's method for large strain did not converge for " + body_text +
                    ", even with a thousandth of the step; check the loads, velocities and shape of the body, or set "
                    "its dynamics to explicit";
         case StepStatus::too_stiff:
-            return "the step was not taken: " + who + " has a stable step of only " + short_text(value) +
+            return "the step was not taken: " + body_text + " has a stable step of only " + short_text(value) +
                    " s, which is too short to advance the time; check the material, size and shape of the body, and "
                    "springs, "
                    "cables, cavities, fibres and loads on it";
@@ -236,7 +237,7 @@ WorldReport World::report() const {
                 m > 0;
     if (world.model.force_rate_moves) note_force_rates(state_->model);
     report.stable_step = reported_step(world.model, &stiffest);
-    report.stable_step_body = name_body(world, place_of_stiffest(world, stiffest)).name;
+    report.stable_step_body = name_body(world, world_row_of_stiffest(world, stiffest)).name;
     for (std::size_t b = 0; b < world.model.body_records.size(); ++b)
         if (const BodyRecord& record = world.model.body_records[b]; record.choice.reason != DynamicsReason::given)
             report.dynamics_choices.push_back({world.model.body_map.handle_of_slot(world.model.bodies.slot[b]),
@@ -289,7 +290,7 @@ WorldReport World::report() const {
         report.worst_volume_element = world.model.user_tetrahedron(b, ratios.item);
     }
     const Balance balance = checked_balance(world, world.clock.time, lag_between_steps(world), world.record.balance);
-    const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
+    const auto share = [](Real part, Real whole) { return whole > 0 ? part / whole : 0; };
     report.energy_error = balance.energy_error;
     report.energy_error_share =
         share(balance.energy_error, std::max(balance.energy_scale, energy_of_rounding(world.model)));

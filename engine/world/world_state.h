@@ -27,7 +27,7 @@ struct OpenEdits {
     // True if bodies with elements were added or removed, or nodes became held or free.
     bool elements = false;
     // by row of BodyTable or ColliderTable: nonzero if it is to be removed; rows beyond the end of the list stay
-    std::vector<std::uint8_t> bodies_gone, colliders_gone;
+    std::vector<std::uint8_t> removed_bodies, removed_colliders;
     ChangedPlaces places;
 };
 
@@ -78,11 +78,11 @@ struct WorldAccess {
     }
 };
 
-/// Copies a world without pending changes. Only reads `from`, so that several threads may copy one world at once.
-World copy_of_settled(const WorldState& from, const LoadSettings& wanted);
+/// Copies a world without pending changes. Only reads `source`, so that several threads may copy one world at once.
+World copy_of_settled(const WorldState& source, const LoadSettings& load_settings);
 
 /// Returns the name of the column or value at an address inside a WorldState, such as "nodes.velocity". The name is
 /// used in messages.
-std::string name_of_column(void* world, const void* place);
+std::string name_of_column(void* world, const void* address);
 
 }  // namespace skerry

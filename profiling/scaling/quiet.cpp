@@ -55,19 +55,19 @@ std::vector<Round> least_disturbed(std::vector<Round> rounds) {
 }
 
 double lower_fifth(std::vector<double> values) {
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 5);
-    std::ranges::nth_element(values, place);
-    return *place;
+    const auto quantile = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 5);
+    std::ranges::nth_element(values, quantile);
+    return *quantile;
 }
 
-double undisturbed_sum(const std::vector<Round>& rounds, std::size_t place) {
-    const std::size_t count = rounds.front().steps[place].size();
+double undisturbed_sum(const std::vector<Round>& rounds, std::size_t stage) {
+    const std::size_t count = rounds.front().steps[stage].size();
     for (const Round& round : rounds)
-        if (round.steps[place].size() != count) throw std::runtime_error("rounds differ in their steps");
+        if (round.steps[stage].size() != count) throw std::runtime_error("rounds differ in their steps");
     double sum = 0;
     std::vector<double> same(rounds.size());
     for (std::size_t step = 0; step < count; ++step) {
-        std::ranges::transform(rounds, same.begin(), [=](const Round& round) { return round.steps[place][step]; });
+        std::ranges::transform(rounds, same.begin(), [=](const Round& round) { return round.steps[stage][step]; });
         sum += lower_fifth(same);
     }
     return sum;

@@ -33,8 +33,8 @@ std::vector<Round> least_disturbed(std::vector<Round> rounds);
 double lower_fifth(std::vector<double> values);
 
 /// Sum over all steps of the lower fifth (lower_fifth) of their times over the rounds, for the number of threads at
-/// index `place` [s]. A step of a millisecond that is disturbed in most rounds, but not in all, thus counts as
+/// index `stage` [s]. A step of a millisecond that is disturbed in most rounds, but not in all, thus counts as
 /// undisturbed. Throws std::runtime_error if the rounds have different numbers of steps.
-double undisturbed_sum(const std::vector<Round>& rounds, std::size_t place);
+double undisturbed_sum(const std::vector<Round>& rounds, std::size_t stage);
 
 }  // namespace skerry::profiling

@@ -46,16 +46,16 @@ struct Timed {
     std::vector<double> seconds{};
 };
 
-void write(Real modulus, const Timed& one, std::ofstream& table) {
-    const Measures m = measure(one.scene, one.first);
-    std::vector<double> cpu = one.seconds;
-    for (double& seconds : cpu) seconds /= one.scene.seconds;
+void write(Real modulus, const Timed& timed, std::ofstream& table) {
+    const Measures m = measure(timed.scene, timed.first);
+    std::vector<double> cpu = timed.seconds;
+    for (double& seconds : cpu) seconds /= timed.scene.seconds;
     const auto [low, high] = std::minmax_element(cpu.begin(), cpu.end());
-    table << one.scene.name << ',' << modulus << ',' << one.runner.engine << ",\"" << one.runner.setting << "\","
-          << one.first.step << ',' << one.scene.seconds << ',' << cpu.size() << ',' << median(cpu) << ',' << *low << ','
-          << *high << ',' << m.creep << ',' << m.acceleration_error << ',' << m.period << ',' << m.peak << ','
+    table << timed.scene.name << ',' << modulus << ',' << timed.runner.engine << ",\"" << timed.runner.setting << "\","
+          << timed.first.step << ',' << timed.scene.seconds << ',' << cpu.size() << ',' << median(cpu) << ',' << *low
+          << ',' << *high << ',' << m.creep << ',' << m.acceleration_error << ',' << m.period << ',' << m.peak << ','
           << m.peak_time << ',' << m.left << ',' << m.speed << ',' << m.overlap << ',' << m.overlap_at_end << ','
-          << m.below_planes << ',' << one.first.finished << '\n'
+          << m.below_planes << ',' << timed.first.finished << '\n'
           << std::flush;
 }
 
@@ -74,15 +74,16 @@ void study(const std::string& name, Real modulus, const Options& options, std::o
             name_of(runner).find(options.setting) != std::string::npos)
             all.push_back({runner, runner.prepared(scene)});
     for (int r = 0; r < options.repeat; ++r)
-        for (Timed& one : all) {
-            if (r > 0 && (!one.first.finished || one.seconds[0] > options.once)) continue;
+        for (Timed& timed : all) {
+            if (r > 0 && (!timed.first.finished || timed.seconds[0] > options.once)) continue;
             std::fprintf(stderr, "\r\033[K%s, %.0e Pa, %d of %d: %s %s, %g ms", name.c_str(), modulus, r + 1,
-                         options.repeat, one.runner.engine.c_str(), one.runner.setting.c_str(), 1e3 * one.runner.step);
-            Record record = one.runner.run(one.scene, options.cap, options.out / "runs");
-            one.seconds.push_back(record.seconds);
-            if (r == 0) one.first = std::move(record);
+                         options.repeat, timed.runner.engine.c_str(), timed.runner.setting.c_str(),
+                         1e3 * timed.runner.step);
+            Record record = timed.runner.run(timed.scene, options.cap, options.out / "runs");
+            timed.seconds.push_back(record.seconds);
+            if (r == 0) timed.first = std::move(record);
         }
-    for (const Timed& one : all) write(modulus, one, table);
+    for (const Timed& timed : all) write(modulus, timed, table);
 }
 
 }  // namespace

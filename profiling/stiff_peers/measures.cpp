@@ -87,7 +87,7 @@ class Inside {
 public:
     Inside(const Mesh& mesh, std::span<const Vec3> places) : mesh_(mesh), places_(places) {
         box_.setEmpty();
-        for (const Vec3& place : places) box_.extend(place);
+        for (const Vec3& position : places) box_.extend(position);
         for (const auto& t : mesh.tetrahedra) {
             Mat3 edges;
             for (int k = 0; k < 3; ++k) edges.col(k) = at(t[static_cast<std::size_t>(k) + 1]) - at(t[0]);
@@ -152,8 +152,8 @@ void measure_overlaps(const PrecisionScene& scene, const Record& record, Measure
         found.overlap_at_end = overlap_of(scene, places, faces);
         found.overlap = std::max(found.overlap, found.overlap_at_end);
         for (const PrecisionPlane& plane : scene.planes)
-            for (const Vec3& place : places)
-                found.below_planes = std::max(found.below_planes, -plane.normal.dot(place - plane.point));
+            for (const Vec3& position : places)
+                found.below_planes = std::max(found.below_planes, -plane.normal.dot(position - plane.point));
     }
 }
 

@@ -168,9 +168,9 @@ private:
         soft->m_tetraScratches.resize(soft->m_tetras.size());
         soft->m_tetraScratchesTn.resize(soft->m_tetras.size());
         for (int n = 0; n < count; ++n) {
-            const auto place = static_cast<std::size_t>(n);
-            soft->setMass(n, body["mass"][place].get<btScalar>());
-            soft->m_nodes[n].m_v = soft->m_nodes[n].m_vn = vector_of(body["velocity"][place]);
+            const auto index = static_cast<std::size_t>(n);
+            soft->setMass(n, body["mass"][index].get<btScalar>());
+            soft->m_nodes[n].m_v = soft->m_nodes[n].m_vn = vector_of(body["velocity"][index]);
         }
         for (const Json& fixed : body["fixed"]) soft->setMass(fixed.get<int>(), 0);
         const Json& material = scene_["material"];

@@ -17,8 +17,9 @@ std::vector<std::vector<Vec3>> vectors_of(const Json& samples) {
     std::vector<std::vector<Vec3>> all;
     for (const Json& sample : samples) {
         const auto values = sample.get<std::vector<Real>>();
-        std::vector<Vec3>& one = all.emplace_back(values.size() / 3);
-        for (std::size_t n = 0; n < one.size(); ++n) one[n] = Vec3(values[3 * n], values[3 * n + 1], values[3 * n + 2]);
+        std::vector<Vec3>& positions = all.emplace_back(values.size() / 3);
+        for (std::size_t n = 0; n < positions.size(); ++n)
+            positions[n] = Vec3(values[3 * n], values[3 * n + 1], values[3 * n + 2]);
     }
     return all;
 }
@@ -64,8 +65,8 @@ std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::s
 
 Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int repeat, double cap,
                 const std::filesystem::path& folder) {
-    const std::filesystem::path place = std::filesystem::absolute(folder);
-    const std::filesystem::path scene_file = place / "scene.json", result_file = place / "result.json";
+    const std::filesystem::path path = std::filesystem::absolute(folder);
+    const std::filesystem::path scene_file = path / "scene.json", result_file = path / "result.json";
     write_scene(scene, scene_file);
     std::filesystem::remove(result_file);
     char numbers[128];

@@ -107,11 +107,11 @@ Record run_once(const PrecisionScene& scene, const SkerryVariant& variant, Real 
 
 std::vector<SkerryVariant> time_variants() {
     const auto variant = [](std::string name, Integrator integrator, Real tolerance) {
-        SkerryVariant one{.name = std::move(name), .settings = {}};
-        one.settings.integrator = integrator;
-        one.settings.tolerance = tolerance;
-        one.settings.max_iterations = 20000;
-        return one;
+        SkerryVariant added{.name = std::move(name), .settings = {}};
+        added.settings.integrator = integrator;
+        added.settings.tolerance = tolerance;
+        added.settings.max_iterations = 20000;
+        return added;
     };
     return {variant("symplectic Euler 1e-3", Integrator::symplectic_euler, 1e-3),
             variant("leapfrog 1e-3", Integrator::leapfrog, 1e-3), variant("leapfrog 1e-8", Integrator::leapfrog, 1e-8)};

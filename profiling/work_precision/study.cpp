@@ -18,8 +18,8 @@ void Study::write(const PrecisionScene& scene, const Row& row, const Record& rec
           << std::flush;
 }
 
-void Study::show(const std::string& what) const {
-    std::fprintf(stderr, "\r\033[K%s", what.c_str());
+void Study::show(const std::string& name) const {
+    std::fprintf(stderr, "\r\033[K%s", name.c_str());
 }
 
 Record Study::run(const PrecisionScene& scene, const SkerryVariant& variant, Real step) const {

@@ -39,7 +39,7 @@ struct Study {
 
     void write(const PrecisionScene& scene, const Row& row, const Record& record);
     /// Shows progress in a line on stderr that is overwritten.
-    void show(const std::string& what) const;
+    void show(const std::string& name) const;
     /// Runs Skerry. Runs that take less than 0.5 s are repeated.
     Record run(const PrecisionScene& scene, const SkerryVariant& variant, Real step) const;
     /// Runs the peer with steps that are halved from run to run. The last run is the engine's own reference and may

@@ -19,8 +19,8 @@ Real creep_of(const PrecisionScene& scene, const Record& record) {
         return Vec3(moment / mass);
     };
     const auto settled = static_cast<std::size_t>(creep_settling / scene.seconds * scene.samples) - 1;
-    const Vec3 way = center(record.positions.size() - 1) - center(settled);
-    return Vec3(way.x(), way.y(), 0).norm() / creep_measured;
+    const Vec3 creep = center(record.positions.size() - 1) - center(settled);
+    return Vec3(creep.x(), creep.y(), 0).norm() / creep_measured;
 }
 
 }  // namespace

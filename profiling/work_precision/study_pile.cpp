@@ -33,12 +33,12 @@ PileState state_of(const PrecisionScene& scene, const Record& record) {
                 heights.push_back(record.positions[s][n].z());
                 ++n;
             }
-        const auto place = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size()));
-        std::ranges::nth_element(heights, place);
-        const auto share = 1 / static_cast<Real>(count - first);
-        mean.height += share * moment / mass;
-        mean.top += share * *place;
-        mean.kinetic += share * kinetic;
+        const auto quantile = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size()));
+        std::ranges::nth_element(heights, quantile);
+        const auto weight = 1 / static_cast<Real>(count - first);
+        mean.height += weight * moment / mass;
+        mean.top += weight * *quantile;
+        mean.kinetic += weight * kinetic;
     }
     return mean;
 }

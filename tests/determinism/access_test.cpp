@@ -12,7 +12,7 @@ namespace skerry::test::determinism_access_test {
 
 TEST_CASE("a stage that uses data that it has not declared fails by name", "[determinism]") {
     WorldState world{Settings{}};
-    world.scratch.parameters.h = world.scratch.parameters.kick = 1e-3;
+    world.scratch.parameters.h = world.scratch.parameters.kick_time = 1e-3;
     const auto fails_with = [&](const char* message, auto touch) {
         TaskGraph graph;
         graph.track(&world, sizeof world, name_of_column);

@@ -12,7 +12,8 @@ namespace body_rows_test {
 
 void start(WorldState& world) {
     world.ranks.whole = whole_world_of(world.model);
-    for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) world.ranks.place.push_back(static_cast<Index>(b));
+    for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b)
+        world.ranks.world_row.push_back(static_cast<Index>(b));
 }
 
 /// Moves random units of a world to a message, and back from it.
@@ -21,7 +22,7 @@ void split_and_merge(World& of, std::uint64_t seed) {
     start(world);
     std::mt19937_64 random(seed);
     std::vector<std::uint8_t> leaves, stays;
-    for (std::size_t b = 0; b < world.ranks.place.size(); ++b) {
+    for (std::size_t b = 0; b < world.ranks.world_row.size(); ++b) {
         const auto unit = static_cast<std::size_t>(world.ranks.whole.unit[b]);
         const bool moves = world.model.bodies.kind[b] == BodyKind::deformable;
         leaves.push_back(unit < b ? leaves[unit] : moves && random() % 2 == 0);
@@ -29,14 +30,15 @@ void split_and_merge(World& of, std::uint64_t seed) {
     }
     const auto leaving = [&](std::uint64_t pair) {
         const PairSlots slots = slots_of_pair(pair);
-        return leaves[static_cast<std::size_t>(world.ranks.whole.place(slots.first))] != 0 ||
-               (!slots.is_collider && leaves[static_cast<std::size_t>(world.ranks.whole.place(slots.second))] != 0);
+        return leaves[static_cast<std::size_t>(world.ranks.whole.row_of_slot(slots.first))] != 0 ||
+               (!slots.is_collider &&
+                leaves[static_cast<std::size_t>(world.ranks.whole.row_of_slot(slots.second))] != 0);
     };
     BodyRows gone = rows_of_bodies(world, leaves, leaving);
     const RankMessage message = message_of(gone);
     replace_rows(world, stays, {}, [&](std::uint64_t pair) { return !leaving(pair); });
     BodyRows back = rows_of_message(message);
-    const std::vector<std::uint8_t> all(world.ranks.place.size(), 1);
+    const std::vector<std::uint8_t> all(world.ranks.world_row.size(), 1);
     replace_rows(world, all, {&back, 1}, [](std::uint64_t) { return true; });
     world.ranks = {};
 }

@@ -28,9 +28,9 @@ RankScene own_scene(const std::string& name) {
 /// Other owners of all units. `turn`: number of the change.
 Column<std::int32_t> next_owners(const RankState& ranks, std::int32_t turn) {
     Column<std::int32_t> owner = ranks.whole.owner;
-    for (std::size_t place = 0; place < owner.size(); ++place)
-        if (owner[place] != WholeWorld::everywhere)
-            owner[place] = (ranks.whole.unit[place] + turn) % ranks.ranks->size();
+    for (std::size_t world_row = 0; world_row < owner.size(); ++world_row)
+        if (owner[world_row] != WholeWorld::everywhere)
+            owner[world_row] = (ranks.whole.unit[world_row] + turn) % ranks.ranks->size();
     return owner;
 }
 
@@ -213,9 +213,9 @@ TEST_CASE("bodies keep their meshes, labels and sets on the ranks to which they 
         WorldState& state = WorldAccess::state_of(world);
         for (std::int32_t turn = 0; turn < 3; ++turn) {
             move_to_owners(state, next_owners(state.ranks, turn));
-            for (std::size_t b = 0; b < state.ranks.place.size(); ++b) {
+            for (std::size_t b = 0; b < state.ranks.world_row.size(); ++b) {
                 const BodyRecord& found = state.model.body_records[b];
-                const BodyRecord& record = expected.body_records[static_cast<std::size_t>(state.ranks.place[b])];
+                const BodyRecord& record = expected.body_records[static_cast<std::size_t>(state.ranks.world_row[b])];
                 const auto require_same = [&](bool same, const char* member) {
                     if (!same) throw std::runtime_error("body '" + record.name + "' has another " + member);
                 };
@@ -323,8 +323,8 @@ TEST_CASE("each rank of a row of bodies holds only its neighbours", "[ranks]") {
         distribute(world, ranks);
         const RankState& state = WorldAccess::state_of(world).ranks;
         const auto rank = static_cast<std::size_t>(ranks.rank());
-        held[rank] = state.place.size();
-        for (std::size_t b = 0; b < state.place.size(); ++b) owned[rank] += state.owns(b);
+        held[rank] = state.world_row.size();
+        for (std::size_t b = 0; b < state.world_row.size(); ++b) owned[rank] += state.owns(b);
         peers[rank] = state.peers.size();
     });
     CHECK(owned == std::vector<std::size_t>(4, bodies / 4));

@@ -119,9 +119,9 @@ class MpirunTest(ProgramCase):
         self.assertEqual(self.ranks(3, "--version").stdout.count("instruction set:"), 1)
 
     def test_an_error_in_the_command_line_is_said_once(self):
-        for command, said in [(["run"], "SCENE is required"), (["run", self.scene, "--bogus"], "--bogus"),
+        for command, message in [(["run"], "SCENE is required"), (["run", self.scene, "--bogus"], "--bogus"),
                               (["rum", self.scene], 'the command "rum"'), (["sweep", "x", "--bogus"], "--bogus")]:
-            self.assertEqual(self.ranks(3, *command, code=2).stderr.count(said), 1)
+            self.assertEqual(self.ranks(3, *command, code=2).stderr.count(message), 1)
         done = self.ranks(1, "run", self.scene, code=2, apart=(PROGRAM, "run", self.scene, "--bogus"))
         self.assertRegex(done.stderr, r"skerry: rank 1 on \S+: .*--bogus")
 
@@ -131,8 +131,8 @@ class MpirunTest(ProgramCase):
             errors = job.communicate(timeout=60)[1]
         self.assertNotEqual(job.returncode, 0)
         self.assertIn("process rank 1", errors)
-        said = re.search(r"from the checkpoint at ([\d.]+) ([mk]?)s: skerry run --restart .*run.skerry", errors)
-        number, prefix = said.groups()
+        match = re.search(r"from the checkpoint at ([\d.]+) ([mk]?)s: skerry run --restart .*run.skerry", errors)
+        number, prefix = match.groups()
         end = ("--seconds", 1.01 * float(number) * {"m": 1e-3, "": 1, "k": 1e3}[prefix] + 0.2)
         expected = self.stats_of(self.skerry, self.scene, *end)
         found = self.stats_of(lambda *arguments: self.ranks(3, *arguments), "--restart", self.checkpoint, *end)
@@ -142,14 +142,14 @@ class MpirunTest(ProgramCase):
     def test_ranks_that_differ_are_named(self):
         other = self.write("other.json", SCENE_OF_FOUR)
         run = ("run", self.scene)
-        for apart, said in [((PROGRAM, "run", other), "command line: found .*other.json"),
+        for apart, message in [((PROGRAM, "run", other), "command line: found .*other.json"),
                             (("env", "SKERRY_INSTRUCTION_SET=x86-64", PROGRAM, *run),
                              "instruction set: found x86-64,")]:
             done = self.ranks(1, *run, code=2, apart=apart)
-            self.assertRegex(done.stderr, rf"skerry: rank 1 on \S+: {said}.*as rank 0 on ")
+            self.assertRegex(done.stderr, rf"skerry: rank 1 on \S+: {message}.*as rank 0 on ")
             self.assertEqual(done.stderr.count("skerry: rank"), 1)
         # the ranks have files of their own under the same name
-        for content, code, said in [(SCENE_OF_FOUR | {"seconds": 0.3}, 2, "hash of the scene and its files: found"),
+        for content, code, message in [(SCENE_OF_FOUR | {"seconds": 0.3}, 2, "hash of the scene and its files: found"),
                                     ({}, 2, r"skerry: rank 1 on \S+: four.json: ")]:
             (self.folder / "host_1").mkdir(exist_ok=True)
             self.write("host_1/four.json", content)
@@ -158,7 +158,7 @@ class MpirunTest(ProgramCase):
             done = subprocess.run([MPIRUN, "-n", "1", *here, ":", "-n", "1", *there], capture_output=True, text=True,
                                   timeout=60, check=False)
             self.assertEqual(done.returncode, code)
-            self.assertRegex(done.stderr, said)
+            self.assertRegex(done.stderr, message)
 
     def test_errors_that_all_ranks_have_are_said_once(self):
         none = self.folder / "none.json"

@@ -43,7 +43,7 @@ struct HeldBar {
     /// Mean displacement of the nodes of the section at `x` [m].
     Vec3 displacement(const Mesh& mesh, Real x) const {
         const std::vector<Index> section =
-            nodes_where(mesh, [&](const Vec3& place) { return std::abs(place.x() - x) < 1e-9; });
+            nodes_where(mesh, [&](const Vec3& position) { return std::abs(position.x() - x) < 1e-9; });
         Vec3 sum = Vec3::Zero();
         for (const Index n : section)
             sum += world.positions(body)[static_cast<std::size_t>(n)] - mesh.nodes[static_cast<std::size_t>(n)];
@@ -51,11 +51,11 @@ struct HeldBar {
     }
 };
 
-/// A rigid cube at `place`.
-BodyHandle add_cube(World& world, const Vec3& place, Real size = 0.1, Real density = 1000) {
+/// A rigid cube at `position`.
+BodyHandle add_cube(World& world, const Vec3& position, Real size = 0.1, Real density = 1000) {
     return world.add_body(
         mesh::box(Vec3::Constant(size), {1, 1, 1}),
-        {.material = world.add_material({.density = density}), .position = place, .dynamics = BodyDynamics::rigid});
+        {.material = world.add_material({.density = density}), .position = position, .dynamics = BodyDynamics::rigid});
 }
 
 Settings with_step(Real h, const Vec3& gravity = Vec3::Zero(), Index threads = 1) {
@@ -124,7 +124,8 @@ TEST_CASE("a cable beside the axis of a bar bends it with the curvature F e / (E
     REQUIRE(bent.world.advance(2).ok());
     const auto rotation = [&](Real x) {  // of the section at x, from the top towards the held end [rad]
         Real sum = 0, squares = 0;
-        for (const Index n : nodes_where(fine, [&](const Vec3& place) { return std::abs(place.x() - x) < 1e-9; })) {
+        for (const Index n :
+             nodes_where(fine, [&](const Vec3& position) { return std::abs(position.x() - x) < 1e-9; })) {
             const Vec3& at = fine.nodes[static_cast<std::size_t>(n)];
             sum -= at.z() * (bent.world.positions(bent.body)[static_cast<std::size_t>(n)] - at).x();
             squares += at.z() * at.z();

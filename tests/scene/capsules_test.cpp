@@ -395,7 +395,7 @@ TEST_CASE("a capsule that spins about its axis does not come to rest, one that l
 }
 
 TEST_CASE("capsules have the same bits on any number of threads, cloned, and from a file", "[determinism]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings = steps_of(5e-3);
         settings.backend = Backend::threads;
         settings.threads = threads;
@@ -408,7 +408,7 @@ TEST_CASE("capsules have the same bits on any number of threads, cloned, and fro
         REQUIRE(c.world.advance(0.3).ok());
         return c;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
 
 }  // namespace skerry::test::capsules_test

@@ -333,7 +333,7 @@ TEST_CASE("the stable step includes the stiffness of a filling and of following 
 
 TEST_CASE("cavities have the same bits on any number of threads, in copies and in files", "[scene][cavities]") {
     const Mesh mesh = hollow_sphere(inner, outer, 14, 1);  // its inner faces are summed in several parts
-    const auto course = [&](int threads) {
+    const auto simulate = [&](int threads) {
         Settings settings = accurate(no_gravity);
         settings.threads = threads;
         HollowSphere sphere(pressurised, rubber(5), BodyDynamics::explicit_elastic, settings, mesh);
@@ -353,7 +353,7 @@ TEST_CASE("cavities have the same bits on any number of threads, in copies and i
         return sphere;
     };
     check_same_bits(
-        course, [](World& world) { REQUIRE(world.advance(0.02).ok()); }, 3);
+        simulate, [](World& world) { REQUIRE(world.advance(0.02).ok()); }, 3);
 }
 
 TEST_CASE("a change of pressure, by table or by hand, wakes a body", "[scene][cavities][sleep]") {

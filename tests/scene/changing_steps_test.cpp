@@ -19,7 +19,7 @@ Real part_of_step(int step) {
 
 /// Length of the force interval (kick) in the last step [s]
 Real kick_of(const World& world) {
-    return WorldAccess::state_of(world).scratch.parameters.kick;
+    return WorldAccess::state_of(world).scratch.parameters.kick_time;
 }
 
 /// Makes one step of length h.

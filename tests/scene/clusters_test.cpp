@@ -131,9 +131,9 @@ TEST_CASE("bodies that are alike have the same implicit elements, as many as one
         World world(weightless(true));
         const MaterialHandle rubber = world.add_material(lossless_rubber());
         Index i = 0;
-        for (const Mesh* of : meshes) {
-            const BodyHandle body =
-                world.add_body(*of, {.material = rubber, .position = {0.3 * i, 0, 0}, .rotation = {0, 0.1 * i, 0}});
+        for (const Mesh* body_mesh : meshes) {
+            const BodyHandle body = world.add_body(
+                *body_mesh, {.material = rubber, .position = {0.3 * i, 0, 0}, .rotation = {0, 0.1 * i, 0}});
             if (i++ == held) world.attach(body, std::vector<Index>{0, 1, 2, 3, 4, 5});
         }
         return world.report().implicit_elements;

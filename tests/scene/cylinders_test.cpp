@@ -108,7 +108,7 @@ TEST_CASE("a cylinder that rolls on its side keeps its speed for ten turns", "[s
     for (const Floor floor : {plane, box, mesh_collider}) {
         CAPTURE(floor);
         Cylinders c(steps_of(1.0 / 120));
-        const Real way = 20 * pi * radius;
+        const Real distance = 20 * pi * radius;
         Real z = radius + kept / 2;
         if (floor == plane) c.world.add_collider(Plane{});
         if (floor == box) c.world.add_collider(Box{{10, 1, 0.2}}, {.position = {0, 0, -0.1}});
@@ -119,7 +119,7 @@ TEST_CASE("a cylinder that rolls on its side keeps its speed for ten turns", "[s
         }
         const BodyHandle body = c.add({-4, 0.03, z}, along_y, {speed, 0, 0}, {0, speed / radius, 0});
         Real highest = 0;
-        for (int look = 0; look * 0.05 < way / speed; ++look) {
+        for (int look = 0; look * 0.05 < distance / speed; ++look) {
             REQUIRE(c.world.advance(0.05).ok());
             highest = std::max(highest, std::abs(c.middle(body).z() - z));
         }
@@ -378,7 +378,7 @@ TEST_CASE("invalid settings of a cylinder are refused by name", "[scene]") {
 }
 
 TEST_CASE("cylinders have the same bits on any number of threads, cloned, and from a file", "[determinism][long]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings = steps_of(5e-3);
         settings.backend = Backend::threads;
         settings.threads = threads;
@@ -391,7 +391,7 @@ TEST_CASE("cylinders have the same bits on any number of threads, cloned, and fr
         REQUIRE(c.world.advance(0.3).ok());
         return c;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
 
 }  // namespace skerry::test::cylinders_test

@@ -247,8 +247,8 @@ TEST_CASE("the elements of equal bodies are tried once", "[scene]") {
     CHECK(!trial);
     CHECK(second.explicit_cost == first.explicit_cost);
     // An explicit body uses the results as if it had computed them itself.
-    const auto as_explicit = [&](World& in, MaterialHandle of) {
-        const BodyHandle added = in.add_body(mesh, {.material = of, .dynamics = BodyDynamics::explicit_elastic});
+    const auto as_explicit = [&](World& in, MaterialHandle material) {
+        const BodyHandle added = in.add_body(mesh, {.material = material, .dynamics = BodyDynamics::explicit_elastic});
         return WorldAccess::state_of(in)
             .model.bodies.rest_step[static_cast<std::size_t>(WorldAccess::state_of(in).model.row(added, "test"))];
     };
@@ -260,16 +260,16 @@ TEST_CASE("automatic dynamics give the bits of the same dynamics given by hand",
     for (const Real modulus : {1e5, 2e11}) {
         INFO(modulus << " Pa");
         std::uint64_t hash[2];
-        for (const bool told : {false, true}) {
+        for (const bool by_hand : {false, true}) {
             World world;
             const auto material = world.add_material({.young_modulus = modulus});
             const BodyDynamics is = modulus > 1e6 ? BodyDynamics::implicit_elastic : BodyDynamics::explicit_elastic;
             world.add_body(
                 mesh::box(Vec3::Constant(0.1), {2, 2, 2}),
-                {.material = material, .position = {0, 0, 0.06}, .dynamics = told ? is : BodySettings{}.dynamics});
+                {.material = material, .position = {0, 0, 0.06}, .dynamics = by_hand ? is : BodySettings{}.dynamics});
             world.add_collider(Plane{});
             REQUIRE(world.advance(0.1).ok());
-            hash[told] = world.state_hash();
+            hash[by_hand] = world.state_hash();
         }
         CHECK(hash[0] == hash[1]);
     }

@@ -58,18 +58,18 @@ private:
 
     int below(int count) { return std::min(count - 1, static_cast<int>((random_.number() + 1) / 2 * count)); }
     template <class Handle>
-    Handle any(const std::vector<Handle>& of) {
-        return of[static_cast<std::size_t>(below(static_cast<int>(of.size())))];
+    Handle any(const std::vector<Handle>& handles) {
+        return handles[static_cast<std::size_t>(below(static_cast<int>(handles.size())))];
     }
     template <class Handle>
-    Handle take(std::vector<Handle>& of) {
-        const auto at = of.begin() + below(static_cast<int>(of.size()));
+    Handle take(std::vector<Handle>& handles) {
+        const auto at = handles.begin() + below(static_cast<int>(handles.size()));
         const Handle taken = *at;
-        of.erase(at);
+        handles.erase(at);
         return taken;
     }
-    void add_body(const Vec3& where) {
-        bodies_.push_back(world.add_body(mesh::ball(radius, 3), {.material = soft_, .position = where}));
+    void add_body(const Vec3& position) {
+        bodies_.push_back(world.add_body(mesh::ball(radius, 3), {.material = soft_, .position = position}));
     }
     /// A position above everything, so that nothing starts inside something else.
     Vec3 above() {
@@ -79,16 +79,16 @@ private:
     }
     /// A random position in the pile, or nothing if something is within `distance` [m]
     std::optional<Vec3> beside(Real distance) {
-        const Vec3 place(0.15 + 0.4 * random_.number(), 0.3 * random_.number(), 0.15 + 0.15 * random_.number());
-        if (world.nearest_point(place, distance)) return std::nullopt;
-        return place;
+        const Vec3 position(0.15 + 0.4 * random_.number(), 0.3 * random_.number(), 0.15 + 0.15 * random_.number());
+        if (world.nearest_point(position, distance)) return std::nullopt;
+        return position;
     }
     /// A position just above another body that has no other neighbours, or else above everything.
     Vec3 close_above(BodyHandle body) {
         const BodyHandle under = any(bodies_);
-        const Vec3 place = world.center_of_mass(under) + Vec3(0, 0, 2.15 * radius);
-        const bool is_free = under != body && !world.nearest_point(place, 1.12 * radius, {.except_bodies = {body}});
-        return is_free ? place : above();
+        const Vec3 position = world.center_of_mass(under) + Vec3(0, 0, 2.15 * radius);
+        const bool is_free = under != body && !world.nearest_point(position, 1.12 * radius, {.except_bodies = {body}});
+        return is_free ? position : above();
     }
 
     void edit_once() {
@@ -103,9 +103,9 @@ private:
             case 3: {
                 const int kind = below(4);
                 const Real room = kind == 0 ? 0.042 : 0.08;
-                const std::optional<Vec3> place = beside(room);
-                if (!place || colliders_.size() > 5) break;
-                const ColliderSettings at{.position = *place, .motion = {.velocity = 0.1 * random_.vector()}};
+                const std::optional<Vec3> position = beside(room);
+                if (!position || colliders_.size() > 5) break;
+                const ColliderSettings at{.position = *position, .motion = {.velocity = 0.1 * random_.vector()}};
                 if (kind == 0) colliders_.push_back({world.add_collider(Sphere{0.04}, at), room});
                 if (kind == 1) colliders_.push_back({world.add_collider(Box{{0.1, 0.1, 0.05}}, at), room});
                 if (kind > 1)
@@ -119,7 +119,7 @@ private:
             case 5:
                 if (!colliders_.empty()) {
                     const PlacedCollider moved = any(colliders_);
-                    if (const auto place = beside(moved.room)) world.set_pose(moved.handle, {.position = *place});
+                    if (const auto position = beside(moved.room)) world.set_pose(moved.handle, {.position = *position});
                 }
                 break;
             case 6:
@@ -294,9 +294,9 @@ TEST_CASE("removing many objects at once gives the same world as removing them o
         Field field(4, 0.101);
         std::vector<ColliderHandle> blocks;
         for (int i = 0; i < 3; ++i) {
-            const Vec3 where(0.1 * i, 0.1, 0.13);
-            blocks.push_back(field.world.add_collider(small_block(), {.position = where}));
-            field.world.add_collider(Sphere{0.02}, {.position = where + Vec3(0, 0.1, 0)});
+            const Vec3 position(0.1 * i, 0.1, 0.13);
+            blocks.push_back(field.world.add_collider(small_block(), {.position = position}));
+            field.world.add_collider(Sphere{0.02}, {.position = position + Vec3(0, 0.1, 0)});
         }
         field.world.attach(field.balls[3], std::array<Index, 2>{0, 1});
         field.world.attach(field.balls[9], std::array<Index, 2>{2, 3}, {.keys = {{0, {0, 0, 0}, {0, 0, 0}}}});
@@ -307,14 +307,14 @@ TEST_CASE("removing many objects at once gives the same world as removing them o
     };
     auto [at_once, blocks] = scene();
     auto [one_by_one, others] = scene();
-    const auto remove_all = [&](Field& field, const std::vector<ColliderHandle>& of, auto&& after_each) {
+    const auto remove_all = [&](Field& field, const std::vector<ColliderHandle>& colliders, auto&& after_each) {
         for (const int i : {15, 3, 0, 6, 7, 11, 5}) {
             field.world.remove(field.balls[static_cast<std::size_t>(i)]);
             after_each();
         }
-        field.world.remove(of[1]);
+        field.world.remove(colliders[1]);
         after_each();
-        field.world.remove(of[0]);
+        field.world.remove(colliders[0]);
         after_each();
         // A freed slot is immediately reused for another body.
         const BodyHandle late =
@@ -439,14 +439,14 @@ TEST_CASE("resting bodies beside an added, removed or changed object wake, and n
         CHECK(field.asleep() == all);
         rest();
         const Real height = world.center_of_mass(upper).z();
-        const int way = GENERATE(0, 1, 2);
-        if (way == 0) world.remove(middle);
-        if (way == 1) {
+        const int kind = GENERATE(0, 1, 2);
+        if (kind == 0) world.remove(middle);
+        if (kind == 1) {
             std::vector<Vec3> moved = x();
             for (Vec3& node : moved) node.z() += 1;
             world.set_positions(middle, moved);
         }
-        if (way == 2) world.set_collision(upper, middle, false);
+        if (kind == 2) world.set_collision(upper, middle, false);
         CHECK_FALSE(world.asleep(upper));
         CHECK(field.asleep() >= world.bodies().size() - 2);
         REQUIRE(world.advance(0.05).ok());

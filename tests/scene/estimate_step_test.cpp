@@ -40,30 +40,31 @@ struct Run {
     ErrorEstimate estimate;
 };
 
-Run run(const Case& of, Real factor) {
-    Settings settings = of.settings;
-    settings.gravity = tilted_gravity(of.slope);
-    settings.step_size = of.step * factor;
+Run run(const Case& test_case, Real factor) {
+    Settings settings = test_case.settings;
+    settings.gravity = tilted_gravity(test_case.slope);
+    settings.step_size = test_case.step * factor;
     settings.sleep = false;
     World world(settings);
-    BodySettings settings_of_body = of.body;
-    settings_of_body.material = world.add_material(of.material);
-    const BodyHandle body = of.mesh.nodes.empty() ? world.add_body(Sphere{.radius = 0.05}, settings_of_body)
-                                                  : world.add_body(of.mesh, settings_of_body);
-    if (of.other)
-        world.add_body(Sphere{.radius = 0.05},
-                       {.material = settings_of_body.material, .position = *of.other, .dynamics = BodyDynamics::rigid});
-    if (of.held) {
-        Real left = infinity;
-        for (const Vec3& x : of.mesh.nodes) left = std::min(left, x.x());
-        world.attach(body, nodes_where(of.mesh, [&](const Vec3& x) { return x.x() < left + 1e-9; }));
+    BodySettings settings_of_body = test_case.body;
+    settings_of_body.material = world.add_material(test_case.material);
+    const BodyHandle body = test_case.mesh.nodes.empty() ? world.add_body(Sphere{.radius = 0.05}, settings_of_body)
+                                                         : world.add_body(test_case.mesh, settings_of_body);
+    if (test_case.other)
+        world.add_body(
+            Sphere{.radius = 0.05},
+            {.material = settings_of_body.material, .position = *test_case.other, .dynamics = BodyDynamics::rigid});
+    if (test_case.held) {
+        Real lowest_x = infinity;
+        for (const Vec3& x : test_case.mesh.nodes) lowest_x = std::min(lowest_x, x.x());
+        world.attach(body, nodes_where(test_case.mesh, [&](const Vec3& x) { return x.x() < lowest_x + 1e-9; }));
     }
-    if (of.floor) {
+    if (test_case.floor) {
         const ColliderHandle floor = world.add_collider(Plane{});
         SurfacePairs pairs(world);
         pairs.set_material(floor, settings_of_body.material);
-        if (of.restitution > 0)
-            pairs.set(settings_of_body.material, settings_of_body.material, {.restitution = of.restitution});
+        if (test_case.restitution > 0)
+            pairs.set(settings_of_body.material, settings_of_body.material, {.restitution = test_case.restitution});
     }
     StepError error;
     Run found;
@@ -72,8 +73,8 @@ Run run(const Case& of, Real factor) {
         found.places.emplace_back(world.positions(body).begin(), world.positions(body).end());
     };
     sample();
-    while (world.time() < of.seconds - of.frame / 2) {
-        REQUIRE(world.advance(of.frame).ok());
+    while (world.time() < test_case.seconds - test_case.frame / 2) {
+        REQUIRE(world.advance(test_case.frame).ok());
         sample();
     }
     std::vector<ErrorEstimate> bodies{{.body = body, .name = {}}};
@@ -256,12 +257,12 @@ std::vector<Case> cases() {
 }  // namespace
 
 TEST_CASE("the estimated error of the steps is near the true error", "[scene][long]") {
-    for (const Case& of : cases()) {
-        CAPTURE(of.name);
-        const Run coarse = run(of, 1);
-        const Real truth = true_error(coarse, run(of, 0.25), of.order);
-        CHECK(coarse.estimate.step < of.within * truth);
-        CHECK(coarse.estimate.step > truth / of.within);
+    for (const Case& test_case : cases()) {
+        CAPTURE(test_case.name);
+        const Run coarse = run(test_case, 1);
+        const Real truth = true_error(coarse, run(test_case, 0.25), test_case.order);
+        CHECK(coarse.estimate.step < test_case.within * truth);
+        CHECK(coarse.estimate.step > truth / test_case.within);
     }
 }
 
@@ -292,10 +293,11 @@ TEST_CASE("a slow load on an implicit body leaves an error below the share of th
 }
 
 TEST_CASE("a body that falls freely with leapfrog has no error of the steps", "[scene]") {
-    Case of{.name = {}, .step = 2e-3, .frame = 0.02, .seconds = 0.2, .mesh = mesh::box({0.1, 0.1, 0.05}, {1, 1, 1})};
-    of.body.dynamics = BodyDynamics::rigid;
-    of.settings.integrator = Integrator::leapfrog;
-    CHECK(run(of, 1).estimate.step == 0);
+    Case test_case{
+        .name = {}, .step = 2e-3, .frame = 0.02, .seconds = 0.2, .mesh = mesh::box({0.1, 0.1, 0.05}, {1, 1, 1})};
+    test_case.body.dynamics = BodyDynamics::rigid;
+    test_case.settings.integrator = Integrator::leapfrog;
+    CHECK(run(test_case, 1).estimate.step == 0);
 }
 
 namespace {
@@ -454,7 +456,7 @@ TEST_CASE("the contact area of two balls follows from the radii and the stiffnes
     area.sample(world);
     area.add_to(bodies);
     const Real expected = std::cbrt(0.75 * force / curvature * compliance);
-    for (const ErrorEstimate& of : bodies) CHECK(of.contact_radius == Approx(expected).epsilon(0.02));
+    for (const ErrorEstimate& estimate : bodies) CHECK(estimate.contact_radius == Approx(expected).epsilon(0.02));
 }
 
 }  // namespace skerry::test::estimate_step_test

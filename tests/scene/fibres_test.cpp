@@ -175,11 +175,11 @@ TEST_CASE("forces of fibres are the derivatives of their energy", "[scene][fibre
             up[n][axis] += step;
             down[n][axis] -= step;
             const Real slope = (energy_at(up) - energy_at(down)) / (2 * step);
-            for (Muscle* of : {&muscle, &plain}) {
-                of->world.set_positions(of->body, shape);
+            for (Muscle* tested : {&muscle, &plain}) {
+                tested->world.set_positions(tested->body, shape);
                 const std::vector<Vec3> rest(shape.size(), Vec3::Zero());
-                of->world.set_velocities(of->body, rest);
-                REQUIRE(of->world.advance(1e-7).ok());
+                tested->world.set_velocities(tested->body, rest);
+                REQUIRE(tested->world.advance(1e-7).ok());
             }
             const Real gained =
                 mass[n] * (muscle.world.velocities(muscle.body)[n] - plain.world.velocities(plain.body)[n])[axis];
@@ -261,7 +261,7 @@ TEST_CASE("a muscle that lifts a weight does the work tension times area times s
 }
 
 TEST_CASE("fibres continue with the same bits with more threads, as a clone and from a file", "[scene][fibres]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings = accurate({0, 0, -standard_gravity});
         settings.threads = threads;
         FibreSettings fibres = along_z();
@@ -271,8 +271,8 @@ TEST_CASE("fibres continue with the same bits with more threads, as a clone and 
         REQUIRE(muscle.world.advance(0.02).ok());
         return muscle;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.05).ok()); });
-    CHECK(course(3).world.state_hash() == course(1).world.state_hash());
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.05).ok()); });
+    CHECK(simulate(3).world.state_hash() == simulate(1).world.state_hash());
 }
 
 TEST_CASE("activation wakes a muscle, and a muscle under constant tension sleeps", "[scene][fibres][sleep]") {

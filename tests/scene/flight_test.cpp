@@ -151,7 +151,7 @@ TEST_CASE("a body in flight stays known as unstrained while contacts push anothe
 
 TEST_CASE("a flight goes on with the same bits from a file and on any number of threads", "[scene]") {
     const MaterialModel model = GENERATE(MaterialModel::stable_neo_hookean, MaterialModel::corotational);
-    const auto course = [&](int threads) {
+    const auto simulate = [&](int threads) {
         Settings settings;
         settings.threads = threads;
         Fall fall(settings, {.young_modulus = 1e5, .model = model});
@@ -159,7 +159,7 @@ TEST_CASE("a flight goes on with the same bits from a file and on any number of 
         CHECK(fall.world.report().unstrained > 0);
         return fall;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
 
 }  // namespace skerry::test::flight_test

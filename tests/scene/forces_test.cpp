@@ -27,11 +27,11 @@ struct Momenta {
     }
 };
 
-std::vector<Index> nodes_where(const World& world, BodyHandle body, auto&& wanted) {
+std::vector<Index> nodes_where(const World& world, BodyHandle body, auto&& is_chosen) {
     std::vector<Index> found;
     const auto nodes = world.positions(body);
     for (std::size_t n = 0; n < nodes.size(); ++n)
-        if (wanted(nodes[n])) found.push_back(static_cast<Index>(n));
+        if (is_chosen(nodes[n])) found.push_back(static_cast<Index>(n));
     return found;
 }
 

@@ -47,10 +47,10 @@ TEST_CASE("held nodes inside a collider of any shape are reported with their dep
         {"cylinder", Cylinder{1, 1}, {.position = {0, 0, -0.5}, .name = "floor"}},
         {"bucket", Bucket{}, {.name = "floor"}},
         {"mesh", mesh::boundary(mesh::box({1, 1, 1}, {4, 4, 4})), {.position = {0, 0, -0.5}, .name = "floor"}}};
-    for (const Case& of : cases) {
-        INFO(of.name);
+    for (const Case& test_case : cases) {
+        INFO(test_case.name);
         Led led;
-        led.world.add_collider(of.shape, of.collider);
+        led.world.add_collider(test_case.shape, test_case.collider);
         led.lead();
         const StepReport report = led.world.advance(0.1);
         REQUIRE(report.ok());

@@ -38,9 +38,9 @@ struct Cantilever {
     BodyHandle body;
     AttachmentHandle hold;
 
-    explicit Cantilever(const Settings& settings, const MaterialSettings& of, const Motion& motion = {},
+    explicit Cantilever(const Settings& settings, const MaterialSettings& material_settings, const Motion& motion = {},
                         BodyDynamics dynamics = BodyDynamics::implicit_elastic, const Mesh& mesh = bar)
-        : world(settings), material(world.add_material(of)) {
+        : world(settings), material(world.add_material(material_settings)) {
         body = world.add_body(mesh, {.material = material, .dynamics = dynamics});
         hold = world.attach(body, end_of(mesh), motion);
     }
@@ -74,7 +74,7 @@ TEST_CASE("a held implicit body hangs as far down as an explicit one", "[scene][
 
 TEST_CASE("a cantilever keeps its amplitude over five periods of fifty steps", "[scene][implicit]") {
     const Mesh mesh = mesh::box({1, 0.1, 0.1}, {10, 1, 1});
-    const auto left = [&](Real theta, Real& period) {
+    const auto remaining_amplitude = [&](Real theta, Real& period) {
         const Real h = period / 50;
         Cantilever scene(settings_of(h, theta, {0, 0, -standard_gravity}), {.young_modulus = 1e9, .poisson_ratio = 0.3},
                          {}, BodyDynamics::implicit_elastic, mesh);
@@ -93,11 +93,11 @@ TEST_CASE("a cantilever keeps its amplitude over five periods of fifty steps", "
         return (*high - *low) / *peak;
     };
     Real period = 0.05;
-    (void)left(0.5, period);
+    (void)remaining_amplitude(0.5, period);
     CHECK(period == Approx(0.05).epsilon(0.3));
-    CHECK(left(0.5, period) > 0.95);
-    CHECK(left(0.51, period) > 0.9);
-    CHECK(left(1, period) < 0.2);
+    CHECK(remaining_amplitude(0.5, period) > 0.95);
+    CHECK(remaining_amplitude(0.51, period) > 0.9);
+    CHECK(remaining_amplitude(1, period) < 0.2);
 }
 
 TEST_CASE("energy and momentum of a held implicit body add up to rounding", "[scene][implicit]") {

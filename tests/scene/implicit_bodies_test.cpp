@@ -156,12 +156,12 @@ TEST_CASE("energy of implicit bodies that hit each other adds up to rounding", "
 
 TEST_CASE("a world with implicit bodies goes on bit by bit when it is cloned or saved, on any number of workers",
           "[scene][implicit]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Collision scene(threads);
         REQUIRE(scene.world.advance(0.02).ok());
         return scene;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.2).ok()); });
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.2).ok()); });
 }
 
 TEST_CASE("an implicit body vibrates as a rod does, damped as theta says", "[scene][implicit]") {
@@ -413,16 +413,16 @@ TEST_CASE("an implicit body comes to rest, sleeps, and wakes when it is hit", "[
 
 TEST_CASE("rows of implicit bodies follow when others go", "[scene][implicit]") {
     const auto scene = [](bool with_first) {
-        ImplicitCube of(without_gravity(1e-3), {.position = {-9, 0, 0}}, {.young_modulus = 1e6});
-        const BodySettings second{.material = of.material,
+        ImplicitCube far_cube(without_gravity(1e-3), {.position = {-9, 0, 0}}, {.young_modulus = 1e6});
+        const BodySettings second{.material = far_cube.material,
                                   .position = {0, 0, 0},
                                   .velocity = {1, 0, 0},
                                   .dynamics = BodyDynamics::implicit_elastic};
-        const BodyHandle body = of.world.add_body(cube, second);
-        of.world.add_collider(Plane{.normal = {-1, 0, 0}}, {.position = {0.06, 0, 0}});
-        if (with_first) of.world.remove(of.body);
-        REQUIRE(of.world.advance(0.1).ok());
-        return std::vector<Vec3>(of.world.positions(body).begin(), of.world.positions(body).end());
+        const BodyHandle body = far_cube.world.add_body(cube, second);
+        far_cube.world.add_collider(Plane{.normal = {-1, 0, 0}}, {.position = {0.06, 0, 0}});
+        if (with_first) far_cube.world.remove(far_cube.body);
+        REQUIRE(far_cube.world.advance(0.1).ok());
+        return std::vector<Vec3>(far_cube.world.positions(body).begin(), far_cube.world.positions(body).end());
     };
     CHECK(scene(true) == scene(false));
 }

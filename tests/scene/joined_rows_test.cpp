@@ -30,10 +30,11 @@ struct Slider {
     std::vector<Index> bottom;  // nodes of the lower face of each body
 
     Slider(SolverMethod method, BodyDynamics dynamics, bool carries, bool ties_elsewhere) : world(settings_of(method)) {
-        const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
+        const MaterialHandle material = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
         world.add_collider(Plane{});
         const auto add = [&](const Vec3& place, BodyDynamics kind) {
-            return world.add_body(cube, {.material = of, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
+            return world.add_body(cube,
+                                  {.material = material, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
         };
         lower = add({0, 0, 0.051}, dynamics);
         for (std::size_t n = 0; n < cube.nodes.size(); ++n)
@@ -83,9 +84,9 @@ TEST_CASE("a joint whose point is far from a small body holds it", "[scene]") {
     for (const JointKind kind : {JointKind::slider, JointKind::fixed, JointKind::hinge}) {
         CAPTURE(static_cast<int>(kind));
         World world({.gravity = {0, 0, -standard_gravity}, .tolerance = 1e-9, .sleep = false});
-        const MaterialHandle of = world.add_material({.density = density});
+        const MaterialHandle material = world.add_material({.density = density});
         const BodyHandle ball = world.add_body(
-            Sphere{radius}, {.material = of, .position = {distance, 0, 0}, .dynamics = BodyDynamics::rigid});
+            Sphere{radius}, {.material = material, .position = {distance, 0, 0}, .dynamics = BodyDynamics::rigid});
         Joints joints(world);
         const JointHandle joint = joints.add({.kind = kind, .first = ball, .axis = {1, 0, 0}});
         REQUIRE(world.advance(0.3).ok());
@@ -101,9 +102,9 @@ TEST_CASE("a joint whose point is far from a small body holds it", "[scene]") {
 TEST_CASE("ties hold bodies whose edges touch", "[scene][ties]") {
     const auto dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::rigid);
     World world({.step_size = 2e-4, .sleep = false});
-    const MaterialHandle of = world.add_material({.young_modulus = 1e6, .damping = 20});
+    const MaterialHandle material = world.add_material({.young_modulus = 1e6, .damping = 20});
     const auto add = [&](const Vec3& place, BodyDynamics kind) {
-        return world.add_body(cube, {.material = of, .position = place, .dynamics = kind});
+        return world.add_body(cube, {.material = material, .position = place, .dynamics = kind});
     };
     const BodyHandle lower = add({0, 0, 0}, dynamics), upper = add({0, 0, side}, BodyDynamics::explicit_elastic),
                      beside = add({-side, 0, side}, BodyDynamics::explicit_elastic);
@@ -142,16 +143,16 @@ TEST_CASE("every solver method gives the same motion with each kind of row", "[s
             CAPTURE(static_cast<int>(dynamics), name);
             Slider slider(method, dynamics, true, false);
             World& world = slider.world;
-            const MaterialHandle of = world.add_material({});
+            const MaterialHandle material = world.add_material({});
             const BodyHandle pendulum =
-                world.add_body(cube, {.material = of, .position = {2, 0, 2}, .dynamics = BodyDynamics::rigid});
+                world.add_body(cube, {.material = material, .position = {2, 0, 2}, .dynamics = BodyDynamics::rigid});
             const BodyHandle lamp =
-                world.add_body(cube, {.material = of, .position = {4, 0, 2}, .dynamics = BodyDynamics::rigid});
+                world.add_body(cube, {.material = material, .position = {4, 0, 2}, .dynamics = BodyDynamics::rigid});
             Joints(world).add({.first = pendulum, .point = {2.1, 0, 2}});
             Cables(world).add(
                 {.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}}, .drive = {.length = 0.95}});
-            const BodyHandle top =
-                world.add_body(cube, {.material = of, .position = {0, 0, 0.051 + 2 * side}, .velocity = {1, 1, 0}});
+            const BodyHandle top = world.add_body(
+                cube, {.material = material, .position = {0, 0, 0.051 + 2 * side}, .velocity = {1, 1, 0}});
             Ties(world).add({.kind = TieKind::ball, .body = top, .nodes = slider.bottom, .to_body = slider.upper});
             REQUIRE(world.advance(0.02).ok());
             CHECK(world.report().unconverged == 0);
@@ -170,9 +171,9 @@ TEST_CASE("a tie that has broken off everywhere no longer leads or limits its bo
     settings.sleep_time = 0.05;
     World world(settings);
     world.add_collider(Plane{});
-    const MaterialHandle of = world.add_material({.young_modulus = 1e6, .damping = 50});
-    const BodyHandle body = world.add_body(cube, {.material = of, .position = {0, 0, 0.051}});
-    const BodyHandle other = world.add_body(cube, {.material = of,
+    const MaterialHandle material = world.add_material({.young_modulus = 1e6, .damping = 50});
+    const BodyHandle body = world.add_body(cube, {.material = material, .position = {0, 0, 0.051}});
+    const BodyHandle other = world.add_body(cube, {.material = material,
                                                    .position = {0.14, 0, 0.11},
                                                    .velocity = {0, 0, 8},
                                                    .angular_velocity = {0, 0, 50},
@@ -202,10 +203,10 @@ TEST_CASE("a force that begins during a long step does not cut it short", "[scen
             settings.step_size = 5e-4;
             settings.implicit_step = implicit_step;
             World world(settings);
-            const MaterialHandle of = world.add_material({.young_modulus = 1e6});
+            const MaterialHandle material = world.add_material({.young_modulus = 1e6});
             const BodyHandle body = world.add_body(
-                cube, {.material = of, .velocity = {speed, 0, 0}, .dynamics = BodyDynamics::implicit_elastic});
-            world.add_body(cube, {.material = of, .position = {0, 5, 0}});
+                cube, {.material = material, .velocity = {speed, 0, 0}, .dynamics = BodyDynamics::implicit_elastic});
+            world.add_body(cube, {.material = material, .position = {0, 5, 0}});
             const Anchor first{.point = {-0.5, 0, 0}}, second{.body = body, .point = {0, 0, 0}};
             if (force == Force::spring)
                 Springs(world).add({.first = first,

@@ -30,9 +30,9 @@ struct Gripper {
 
     explicit Gripper(Index threads = 1) : world(settings_of(Vec3::Zero(), threads)) {
         const MaterialHandle material = world.add_material({}), dense = world.add_material({.density = 3000});
-        const auto add = [&](const Vec3& size, const Vec3& place, MaterialHandle of) {
+        const auto add = [&](const Vec3& size, const Vec3& position, MaterialHandle body_material) {
             return world.add_body(mesh::box(size, {1, 1, 1}),
-                                  {.material = of, .position = place, .dynamics = BodyDynamics::rigid});
+                                  {.material = body_material, .position = position, .dynamics = BodyDynamics::rigid});
         };
         palm = add({0.1, 0.2, 0.05}, {0, 0, 0}, material);
         first = add({0.02, 0.02, 0.1}, {0, 0.03, 0.08}, material);

@@ -385,8 +385,8 @@ TEST_CASE("objects that joints cannot join are refused by name", "[scene][joints
     const auto soft = world.add_body(bar, {.material = material, .name = "noodle"});
     const auto first =
         world.add_body(bar, {.material = material, .position = {1, 0, 0}, .dynamics = BodyDynamics::rigid});
-    const auto refused = [&](const JointSettings& joint, const char* what) {
-        CHECK_THROWS_WITH(Joints(world).add(joint), Catch::Matchers::Contains(what));
+    const auto refused = [&](const JointSettings& joint, const char* message) {
+        CHECK_THROWS_WITH(Joints(world).add(joint), Catch::Matchers::Contains(message));
     };
     refused({.first = soft}, "noodle");
     refused({.first = first, .second = soft}, "noodle");

@@ -35,10 +35,11 @@ struct Cantilever {
     World world;
     BodyHandle body;
 
-    Cantilever(const Settings& settings, const MaterialSettings& of, const Mesh& bar,
+    Cantilever(const Settings& settings, const MaterialSettings& material_settings, const Mesh& bar,
                BodyDynamics dynamics = BodyDynamics::implicit_elastic, ElementKind kind = ElementKind::smoothed)
         : mesh(bar), world(settings) {
-        body = world.add_body(mesh, {.material = world.add_material(of), .dynamics = dynamics, .element = kind});
+        body = world.add_body(
+            mesh, {.material = world.add_material(material_settings), .dynamics = dynamics, .element = kind});
         world.attach(body, end_of(mesh, false), Motion{});
     }
     Vec3 tip() const {
@@ -67,7 +68,9 @@ Vec3 angular_momentum_of_solid(const Mesh& mesh, Real density, const World& worl
     const auto x = world.positions(body), v = world.velocities(body);
     Vec3 sum = Vec3::Zero();
     for (const auto& corners : mesh.tetrahedra) {
-        const auto at = [&](const auto& of, std::size_t k) -> Vec3 { return of[static_cast<std::size_t>(corners[k])]; };
+        const auto at = [&](const auto& values, std::size_t k) -> Vec3 {
+            return values[static_cast<std::size_t>(corners[k])];
+        };
         const Vec3 edge = mesh.nodes[static_cast<std::size_t>(corners[1])] -
                           mesh.nodes[static_cast<std::size_t>(corners[0])],
                    second = mesh.nodes[static_cast<std::size_t>(corners[2])] -
@@ -94,10 +97,11 @@ struct Spun {
     BodyHandle body;
 
     explicit Spun(const Settings& settings, BodyDynamics dynamics = BodyDynamics::implicit_elastic,
-                  const MaterialSettings& of = lossless({.young_modulus = 1e5, .poisson_ratio = 0}))
+                  const MaterialSettings& material_settings = lossless({.young_modulus = 1e5, .poisson_ratio = 0}))
         : mesh(mesh::box({1, 0.1, 0.1}, {10, 1, 1})), world(settings) {
         body = world.add_body(
-            mesh, {.material = world.add_material(of), .dynamics = dynamics, .element = ElementKind::linear});
+            mesh,
+            {.material = world.add_material(material_settings), .dynamics = dynamics, .element = ElementKind::linear});
         std::vector<Vec3> shape, velocity;
         for (const Vec3& x : mesh.nodes) {
             shape.push_back({x.x() + 0.05 * std::sin(std::acos(-1.0) * x.x()), x.y(), x.z()});
@@ -329,7 +333,7 @@ TEST_CASE("a spinning bar that comes to rest in its frame leaves large strain, a
     Spun scene(settings_of(h, 1, Vec3::Zero()), BodyDynamics::implicit_elastic,
                lossless({.young_modulus = 1e6, .poisson_ratio = 0, .damping = 5}));
     const Vec3 whole = scene.world.report().angular_momentum;
-    const auto copy_of = [](std::span<const Vec3> of) { return std::vector<Vec3>(of.begin(), of.end()); };
+    const auto copy_of = [](std::span<const Vec3> values) { return std::vector<Vec3>(values.begin(), values.end()); };
     std::vector<Real> kicked, beside;  // largest velocity change, and velocity minus displacement rate, per step [m/s]
     std::vector<std::size_t> entered, left;
     std::uint64_t before = 0;

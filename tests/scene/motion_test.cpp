@@ -94,9 +94,9 @@ TEST_CASE("colliders turn by whole turns between keys, whatever their shape", "[
         REQUIRE(world.advance(0.05).ok());
         const Real t = world.time();
         const Real angle = t < 1 ? 6 * pi * t : t < 2 ? 6 * pi + (t - 1) * (0.9 - 6) * pi : (0.9 + 0.2 * (t - 2)) * pi;
-        for (const Case& of : cases) {
-            const Mat3 expected = rotation_matrix({angle, 0, 0}) * of.frame;
-            worst = std::max(worst, (rotation_matrix(world.pose(of.collider).rotation) - expected).norm());
+        for (const Case& test_case : cases) {
+            const Mat3 expected = rotation_matrix({angle, 0, 0}) * test_case.frame;
+            worst = std::max(worst, (rotation_matrix(world.pose(test_case.collider).rotation) - expected).norm());
         }
     }
     CHECK(worst < 1e-9);

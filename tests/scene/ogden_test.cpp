@@ -104,7 +104,7 @@ TEST_CASE("an implicit block of rubber comes back to rest from a large strain, a
 }
 
 TEST_CASE("rubber has the same bits on any number of workers, and after saving and loading", "[scene][determinism]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings;
         settings.threads = threads;
         World world(settings);
@@ -116,7 +116,7 @@ TEST_CASE("rubber has the same bits on any number of workers, and after saving a
         return world;
     };
     check_same_bits(
-        course, [](World& world) { REQUIRE(world.advance(0.05).ok()); }, 3);
+        simulate, [](World& world) { REQUIRE(world.advance(0.05).ok()); }, 3);
 }
 
 TEST_CASE("moduli of rubber are converted to small strain, can be read back, and change while the world runs",

@@ -97,7 +97,7 @@ TEST_CASE("an orthotropic body keeps energy and momenta at its stable step, howe
 }
 
 TEST_CASE("orthotropic bodies continue with the same bits, and can be read back and changed", "[scene]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings = accurate();
         settings.threads = threads;
         Bar bar(orthotropic(composite()), BodyDynamics::explicit_elastic, ElementKind::smoothed, settings, {0.3, 0, 1});
@@ -105,9 +105,9 @@ TEST_CASE("orthotropic bodies continue with the same bits, and can be read back 
         REQUIRE(bar.world.advance(0.02).ok());
         return bar;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.05).ok()); });
-    CHECK(course(3).world.state_hash() == course(1).world.state_hash());
-    Bar bar = course(1);
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.05).ok()); });
+    CHECK(simulate(3).world.state_hash() == simulate(1).world.state_hash());
+    Bar bar = simulate(1);
     const MaterialHandle handle = bar.world.material(bar.body);
     const MaterialSettings before = bar.world.material(handle);
     CHECK(before.orthotropic == composite());
@@ -119,7 +119,7 @@ TEST_CASE("orthotropic bodies continue with the same bits, and can be read back 
     stiffer.orthotropic.young_modulus *= 4;
     stiffer.orthotropic.shear_modulus *= 4;
     bar.world.set_material(handle, stiffer);
-    CHECK(bar.world.stable_step() < 0.6 * course(1).world.stable_step());
+    CHECK(bar.world.stable_step() < 0.6 * simulate(1).world.stable_step());
 }
 
 TEST_CASE("orthotropic constants without a positive definite stiffness are refused with the condition", "[scene]") {

@@ -39,9 +39,9 @@ struct Stack {
         settings.sleep = true;
         return settings;
     }
-    BodyHandle add(const Vec3& where, const Vec3& velocity = Vec3::Zero()) {
-        return world.add_body(block,
-                              {.material = rubber, .position = where, .velocity = velocity, .contact_distance = 0.002});
+    BodyHandle add(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+        return world.add_body(
+            block, {.material = rubber, .position = position, .velocity = velocity, .contact_distance = 0.002});
     }
     bool all_rest() const { return world.report().asleep == world.bodies().size(); }
     /// Returns false if the bodies do not fall asleep within `most` seconds.
@@ -281,13 +281,13 @@ TEST_CASE("a collider that begins to move ends the steps that are left out", "[s
     REQUIRE(stack.settle(11));
     REQUIRE(stack.world.advance(12 - stack.world.time()).ok());
     REQUIRE(stack.all_rest());
-    const std::uint64_t left_out = stack.world.report().resting_steps;
-    CHECK(left_out > 0);
+    const std::uint64_t skipped_steps = stack.world.report().resting_steps;
+    CHECK(skipped_steps > 0);
     REQUIRE(stack.world.advance(1).ok());
     CHECK_FALSE(stack.world.asleep(stack.high));
     CHECK(stack.world.asleep(stack.beside));
     CHECK(stack.world.center_of_mass(stack.high).z() < 0.152);
-    CHECK(stack.world.report().resting_steps == left_out);
+    CHECK(stack.world.report().resting_steps == skipped_steps);
 }
 
 }  // namespace skerry::test::resting_contacts_test

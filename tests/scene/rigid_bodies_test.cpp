@@ -159,7 +159,7 @@ TEST_CASE("a rigid body exchanges momentum with one that deforms", "[scene][rigi
 
 TEST_CASE("a world with rigid bodies goes on bit by bit when it is cloned or saved, on any number of workers",
           "[scene][rigid]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings;
         settings.threads = threads;
         World world(settings);
@@ -175,7 +175,7 @@ TEST_CASE("a world with rigid bodies goes on bit by bit when it is cloned or sav
         return world;
     };
     check_same_bits(
-        course, [](World& world) { REQUIRE(world.advance(0.3).ok()); }, 4);
+        simulate, [](World& world) { REQUIRE(world.advance(0.3).ok()); }, 4);
 }
 
 TEST_CASE("a rigid body that is set by hand stays rigid", "[scene][rigid]") {

@@ -35,11 +35,12 @@ struct OneBody {
     MaterialHandle material;
     BodyHandle body;
 
-    OneBody(const Settings& settings, const auto& shape, BodySettings of = {}, const MaterialSettings& made_of = {})
+    OneBody(const Settings& settings, const auto& shape, BodySettings body_settings = {},
+            const MaterialSettings& made_of = {})
         : world(settings), material(world.add_material(made_of)) {
-        of.material = material;
-        of.dynamics = BodyDynamics::rigid;
-        body = world.add_body(shape, of);
+        body_settings.material = material;
+        body_settings.dynamics = BodyDynamics::rigid;
+        body = world.add_body(shape, body_settings);
     }
 
     /// Inertia tensor about the centre of mass in world axes, from the angular momenta of three spins [kg m^2].
@@ -280,15 +281,15 @@ TEST_CASE("a ball with a low centre of mass rolls back and forth with the period
 }
 
 TEST_CASE("worlds with rigid surfaces and given masses continue with the same bits", "[scene][rigid]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings;
         settings.threads = threads;
         OneBody scene(settings, brick, {.position = {0, 0, 0.2}, .rotation = {0.2, 0.3, 0}});
-        BodySettings of = link_settings();
-        of.material = scene.material;
-        of.dynamics = BodyDynamics::rigid;
-        of.position = {0.05, 0, 0.6};
-        const BodyHandle link = scene.world.add_body(brick, of);
+        BodySettings body_settings = link_settings();
+        body_settings.material = scene.material;
+        body_settings.dynamics = BodyDynamics::rigid;
+        body_settings.position = {0.05, 0, 0.6};
+        const BodyHandle link = scene.world.add_body(brick, body_settings);
         const SpringHandle spring = Springs(scene.world)
                                         .add({.first = {.body = link, .point = {0.3, 0, 0.8}},
                                               .second = {.point = {0.5, 0, 1}},
@@ -299,7 +300,7 @@ TEST_CASE("worlds with rigid surfaces and given masses continue with the same bi
         REQUIRE(scene.world.advance(0.3).ok());
         return scene;
     };
-    check_same_bits(course, [](World& world) {
+    check_same_bits(simulate, [](World& world) {
         world.set_material(world.materials()[0], {.density = 1500});
         REQUIRE(world.advance(0.2).ok());
     });

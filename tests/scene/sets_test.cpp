@@ -32,8 +32,8 @@ TEST_CASE("a body has the sets and labels of its mesh, also as a copy, from a fi
     World loaded = World::from_bytes(world.to_bytes()), copy = world.clone();
     CHECK(loaded.state_hash() == hash);
     world.set_dynamics(body, BodyDynamics::rigid);
-    for (World* of : {&world, &loaded, &copy}) {
-        const Sets sets(*of);
+    for (World* tested : {&world, &loaded, &copy}) {
+        const Sets sets(*tested);
         CHECK(sets.names(body) == Names{"core", "corner", "more"});
         CHECK(sets.get(body, "core") == MeshSet{.tetrahedra = {1, 2}});
         CHECK(sets.nodes(body, "more") == std::vector<Index>{3, 5});

@@ -38,10 +38,10 @@ TEST_CASE("the reaction of a swinging bar is right after calls of any length", "
         Real young_modulus;
     };
     // The softer bar bends so far that Newton's method solves the steps of the implicit body.
-    for (const Case& of : {Case{BodyDynamics::explicit_elastic, 1e6}, Case{BodyDynamics::implicit_elastic, 1e6},
-                           Case{BodyDynamics::implicit_elastic, 1e8}}) {
-        INFO(name_of(of.dynamics) << " " << of.young_modulus);
-        Bar bar(of.dynamics, of.young_modulus);
+    for (const Case& test_case : {Case{BodyDynamics::explicit_elastic, 1e6}, Case{BodyDynamics::implicit_elastic, 1e6},
+                                  Case{BodyDynamics::implicit_elastic, 1e8}}) {
+        INFO(name_of(test_case.dynamics) << " " << test_case.young_modulus);
+        Bar bar(test_case.dynamics, test_case.young_modulus);
         for (int k = 0; k < 40; ++k) REQUIRE(bar.world.advance(0.01).ok());
         World next = bar.world.clone();
         REQUIRE(next.advance(1e-5).ok());

@@ -35,9 +35,9 @@ struct Tower {
         return tuned_world({.threads = threads, .sleep = speed < 0, .sleep_time = sleep_time},
                            {.sleep_speed = std::max<Real>(speed, 0)});
     }
-    BodyHandle add(const Vec3& where, const Vec3& velocity = Vec3::Zero()) {
-        return world.add_body(block,
-                              {.material = rubber, .position = where, .velocity = velocity, .contact_distance = 0.002});
+    BodyHandle add(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+        return world.add_body(
+            block, {.material = rubber, .position = position, .velocity = velocity, .contact_distance = 0.002});
     }
     std::vector<Vec3> copy(BodyHandle body) const {
         const auto x = world.positions(body);
@@ -213,8 +213,8 @@ TEST_CASE("a slab that should slide is never put to rest, one that has come to a
             CAPTURE(degrees, slab.world.time());
             REQUIRE_FALSE(slab.world.asleep(slab.block));
         }
-        const Vec3 way = slab.world.center_of_mass(slab.block) - awake.world.center_of_mass(awake.block);
-        CHECK(way == Vec3::Zero());
+        const Vec3 displacement = slab.world.center_of_mass(slab.block) - awake.world.center_of_mass(awake.block);
+        CHECK(displacement == Vec3::Zero());
     }
     Slab slab(15);
     REQUIRE(slab.world.advance(3).ok());
@@ -300,31 +300,31 @@ TEST_CASE("a body at constant speed never rests, be it on ice, rolling, carried,
           "[scene][long]") {
     constexpr Real speed = 1e-4;  // 2 to 7 times below the speed at which bodies move too far to count as still [m/s]
     enum What { on_ice, rolling, carried, by_motor };
-    const auto what = GENERATE(on_ice, rolling, carried, by_motor);
-    CAPTURE(what);
+    const auto motion = GENERATE(on_ice, rolling, carried, by_motor);
+    CAPTURE(motion);
     World world;
     const auto material =
-        world.add_material({.young_modulus = 1e6, .density = 500, .friction = what == on_ice ? 0.0 : 0.5});
+        world.add_material({.young_modulus = 1e6, .density = 500, .friction = motion == on_ice ? 0.0 : 0.5});
     const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
     BodySettings settings{.material = material, .velocity = {speed, 0, 0}, .contact_distance = 0.002};
     BodyHandle body;
-    if (what == rolling) {
+    if (motion == rolling) {
         settings.position = {0, 0, 0.1 + 0.001};
         settings.angular_velocity = {0, speed / 0.1, 0};
         settings.dynamics = BodyDynamics::rigid;
         body = world.add_body(Sphere{0.1}, settings);
     } else {
-        settings.position = {0, 0, what == on_ice ? 0.051 : 1};
-        if (what == by_motor) settings.dynamics = BodyDynamics::rigid;
+        settings.position = {0, 0, motion == on_ice ? 0.051 : 1};
+        if (motion == by_motor) settings.dynamics = BodyDynamics::rigid;
         body = world.add_body(mesh, settings);
     }
-    if (what == on_ice || what == rolling) world.add_collider(Plane{});
-    if (what == carried) {
+    if (motion == on_ice || motion == rolling) world.add_collider(Plane{});
+    if (motion == carried) {
         std::vector<Vec3> lift;
         for (const Real mass : node_masses(world, body, mesh, 500)) lift.push_back(-mass * world.settings().gravity);
         world.set_loads(body, lift);
     }
-    if (what == by_motor)
+    if (motion == by_motor)
         Joints(world).add({.kind = JointKind::hinge,
                            .first = body,
                            .point = {0, 0, 1},
@@ -334,9 +334,9 @@ TEST_CASE("a body at constant speed never rests, be it on ice, rolling, carried,
         REQUIRE(world.advance(0.1).ok());
         REQUIRE_FALSE(world.asleep(body));
     }
-    const Vec3 way = what == by_motor ? Vec3(world.pose(body).rotation.z() * 0.1, 0, 0)
-                                      : Vec3(world.center_of_mass(body) - settings.position);
-    CHECK(way.x() == Approx(4 * speed).epsilon(0.02));
+    const Vec3 displacement = motion == by_motor ? Vec3(world.pose(body).rotation.z() * 0.1, 0, 0)
+                                                 : Vec3(world.center_of_mass(body) - settings.position);
+    CHECK(displacement.x() == Approx(4 * speed).epsilon(0.02));
 }
 
 TEST_CASE("if all bodies appear still, regions are solved to 1e-5, else to the tolerance, with the same bits",

@@ -158,7 +158,7 @@ TEST_CASE("the drawn mesh of a sphere moves with it", "[scene]") {
 }
 
 TEST_CASE("drawing a sphere within a call changes no bit", "[scene]") {
-    const auto course = [](bool looks, bool may_rest) {
+    const auto simulate = [](bool looks, bool may_rest) {
         Settings settings = steps_of(1e-3);
         settings.sleep = may_rest;
         settings.sleep_time = 1000;
@@ -177,8 +177,8 @@ TEST_CASE("drawing a sphere within a call changes no bit", "[scene]") {
         CHECK((steps > 50) == looks);
         return s.world.state_hash();
     };
-    CHECK(course(true, false) == course(false, false));
-    CHECK(course(true, true) == course(false, true));
+    CHECK(simulate(true, false) == simulate(false, false));
+    CHECK(simulate(true, true) == simulate(false, true));
 }
 
 TEST_CASE("loads on any of the nodes that draw a sphere move it", "[scene]") {
@@ -207,7 +207,7 @@ TEST_CASE("a sphere that spins in one place moves, and does not come to rest", "
     const BodyHandle ball = s.add({0, 0, 1}, Vec3::Zero(), {2, 0, 0}),
                      still = s.add({1, 0, 1}, Vec3::Zero(), {0.5, 0, 0});
     std::vector<Vec3> before;
-    for (const Vec3& of : s.world.positions(still)) before.push_back(of - Vec3(1, 0, 1));
+    for (const Vec3& node : s.world.positions(still)) before.push_back(node - Vec3(1, 0, 1));
     REQUIRE(s.world.advance(0.1).ok());
     CHECK(!s.world.asleep(ball));
     CHECK(s.world.asleep(still));
@@ -447,7 +447,7 @@ TEST_CASE("invalid settings of a sphere are refused by name", "[scene]") {
 }
 
 TEST_CASE("spheres have the same bits on any number of threads, cloned, and from a file", "[determinism]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Settings settings = steps_of(5e-3);
         settings.backend = Backend::threads;
         settings.threads = threads;
@@ -458,7 +458,7 @@ TEST_CASE("spheres have the same bits on any number of threads, cloned, and from
         REQUIRE(s.world.advance(0.3).ok());
         return s;
     };
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
+    check_same_bits(simulate, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
 
 }  // namespace skerry::test::spheres_test

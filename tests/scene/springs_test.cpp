@@ -349,7 +349,7 @@ TEST_CASE("a body on a slow winch does not fall asleep before the winch stops", 
 }
 
 TEST_CASE("springs continue with the same bits with more threads, as a clone and from a file", "[scene][springs]") {
-    const auto course = [](Index threads) {
+    const auto simulate = [](Index threads) {
         Settings settings;
         settings.threads = threads;
         World world(settings);
@@ -377,7 +377,7 @@ TEST_CASE("springs continue with the same bits with more threads, as a clone and
         world.advance(0.2);
         return world;
     };
-    check_same_bits(course, [](World& world) { world.advance(0.2); });
+    check_same_bits(simulate, [](World& world) { world.advance(0.2); });
 }
 
 TEST_CASE("a spring limits the steps of a rigid body after loading as before", "[scene][springs]") {

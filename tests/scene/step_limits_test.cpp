@@ -16,10 +16,10 @@ namespace {
 void check_sums(const WorldReport& report) {
     std::uint64_t steps = 0, tries = 0;
     Real seconds = 0;
-    for (const StepLimitReport& of : report.step_limits) {
-        steps += of.steps;
-        tries += of.tries;
-        seconds += of.seconds;
+    for (const StepLimitReport& limit_report : report.step_limits) {
+        steps += limit_report.steps;
+        tries += limit_report.tries;
+        seconds += limit_report.seconds;
     }
     CHECK(steps == report.steps);
     CHECK(tries == report.shortened);
@@ -27,8 +27,8 @@ void check_sums(const WorldReport& report) {
 }
 
 const StepLimitReport* find(const WorldReport& report, StepLimit limit) {
-    for (const StepLimitReport& of : report.step_limits)
-        if (of.limit == limit) return &of;
+    for (const StepLimitReport& limit_report : report.step_limits)
+        if (limit_report.limit == limit) return &limit_report;
     return nullptr;
 }
 
@@ -98,10 +98,10 @@ TEST_CASE("a body that is thrown hard counts for what it makes of the steps", "[
     check_sums(report);
     std::uint64_t shortened_steps = 0;
     for (const StepLimit limit : {StepLimit::speed, StepLimit::inversion, StepLimit::crossing})
-        if (const StepLimitReport* of = find(report, limit)) {
-            shortened_steps += of->steps;
-            CHECK(of->tries > 0);
-            if (limit != StepLimit::crossing) CHECK(of->body == body);
+        if (const StepLimitReport* limit_report = find(report, limit)) {
+            shortened_steps += limit_report->steps;
+            CHECK(limit_report->tries > 0);
+            if (limit != StepLimit::crossing) CHECK(limit_report->body == body);
         }
     CHECK(shortened_steps >= report.shortened);
     CHECK(std::ranges::is_sorted(report.step_limits, std::greater{}, &StepLimitReport::steps));
@@ -116,7 +116,7 @@ TEST_CASE("no step is shortened for slivers that turn over", "[scene]") {
     REQUIRE(world.advance(0.1).ok());
     const WorldReport report = world.report();
     CHECK(report.inversions > 10);
-    for (const StepLimitReport& of : report.step_limits) CHECK(of.limit != StepLimit::inversion);
+    for (const StepLimitReport& limit_report : report.step_limits) CHECK(limit_report.limit != StepLimit::inversion);
 }
 
 }  // namespace skerry::test::step_limits_test

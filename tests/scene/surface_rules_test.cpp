@@ -48,9 +48,9 @@ struct SkiBlock {
     SurfaceSetHandle set;
 
     SkiBlock(const Settings& settings, Real along, Real across, BodyDynamics dynamics = BodyDynamics::rigid,
-             Real turned = 0, const MaterialSettings& stuff = {})
+             Real turned = 0, const MaterialSettings& material_settings = {})
         : world(settings) {
-        const auto material = world.add_material(stuff);
+        const auto material = world.add_material(material_settings);
         world.add_collider(Plane{});
         BodySettings place = placed(material, {0, 0, 0.025}, dynamics);
         place.rotation = {0, 0, turned};

@@ -43,10 +43,10 @@ TEST_CASE("two halves with matching meshes move like the whole bar", "[scene][ti
     const Mesh mesh = mesh::box({2 * half, side, side}, {8, 2, 2});
     const std::array<Mesh, 2> part{part_of(mesh, false), part_of(mesh, true)};
     World whole(settings), tied(settings);
-    const auto add = [&](World& world, const Mesh& of) {
-        return world.add_body(of, {.material = world.add_material(rubber),
-                                   .dynamics = BodyDynamics::explicit_elastic,
-                                   .element = ElementKind::linear});
+    const auto add = [&](World& world, const Mesh& bar_mesh) {
+        return world.add_body(bar_mesh, {.material = world.add_material(rubber),
+                                         .dynamics = BodyDynamics::explicit_elastic,
+                                         .element = ElementKind::linear});
     };
     const BodyHandle bar = add(whole, mesh);
     const std::array<BodyHandle, 2> body{add(tied, part[0]), add(tied, part[1])};
@@ -55,10 +55,10 @@ TEST_CASE("two halves with matching meshes move like the whole bar", "[scene][ti
     const auto velocity = [](const Vec3& x) {
         return Vec3(0.1 * std::sin(8 * x.x()), 0.2 * std::cos(9 * x.x()) + x.x() * x.z(), -x.x() * x.y());
     };
-    const auto start = [&](World& world, BodyHandle of, const Mesh& nodes) {
+    const auto start = [&](World& world, BodyHandle moved, const Mesh& nodes) {
         std::vector<Vec3> v;
         for (const Vec3& x : nodes.nodes) v.push_back(velocity(x));
-        world.set_velocities(of, v);
+        world.set_velocities(moved, v);
     };
     start(whole, bar, mesh);
     start(tied, body[0], part[0]);

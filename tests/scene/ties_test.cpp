@@ -77,7 +77,7 @@ TEST_CASE("a weld to a rigid body across a gap conserves angular momentum", "[sc
         const Vec3 center = world.center_of_mass(rigid);
         const auto x = world.positions(rigid), v = world.velocities(rigid);
         Vec3 velocity = Vec3::Zero(), turning = Vec3::Zero();
-        for (const Vec3& of : v) velocity += of / static_cast<Real>(v.size());
+        for (const Vec3& node_velocity : v) velocity += node_velocity / static_cast<Real>(v.size());
         Mat3 spread = Mat3::Zero(), axes;
         for (std::size_t n = 0; n < x.size(); ++n) {
             const Vec3 arm = x[n] - center;
@@ -133,9 +133,9 @@ TEST_CASE("a node breaks off at its greatest force", "[scene][ties]") {
     constexpr Real limit = 2, rate = 10;  // [N], [N/s]
     Settings settings = without_gravity();
     World world(settings);
-    const MaterialHandle of = world.add_material(rubber);
+    const MaterialHandle material = world.add_material(rubber);
     const Mesh cube = mesh::box({side, side, side}, {1, 1, 1});
-    const BodyHandle body = world.add_body(cube, {.material = of, .dynamics = BodyDynamics::implicit_elastic});
+    const BodyHandle body = world.add_body(cube, {.material = material, .dynamics = BodyDynamics::implicit_elastic});
     Ties ties(world);
     const TieHandle tie = ties.add({.body = body, .nodes = {0}, .break_force = limit});
     Real most = 0;
@@ -182,10 +182,10 @@ TEST_CASE("a tie follows a moving collider and keeps its bodies awake", "[scene]
     settings.sleep_time = 0.05;
     for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
         World world(settings);
-        const MaterialHandle of = world.add_material({.young_modulus = 1e6, .damping = 50});
+        const MaterialHandle material = world.add_material({.young_modulus = 1e6, .damping = 50});
         const ColliderHandle box = world.add_collider(Box{{side, side, side}}, {.position = {0, 0, side + 0.02}});
         const Mesh cube = mesh::box({side, side, side}, {2, 2, 2});
-        const BodyHandle body = world.add_body(cube, {.material = of, .dynamics = dynamics});
+        const BodyHandle body = world.add_body(cube, {.material = material, .dynamics = dynamics});
         std::vector<Index> top;
         for (std::size_t n = 0; n < cube.nodes.size(); ++n)
             if (cube.nodes[n].z() > 0.049) top.push_back(static_cast<Index>(n));
@@ -291,16 +291,16 @@ TEST_CASE("a light soft block carries a body of ten thousand times its mass", "[
 TEST_CASE("tied blocks slide with friction as one block", "[scene][ties]") {
     constexpr Real mu = 0.3, degrees = 30;
     World world(accurate(tilted_gravity(degrees)));
-    const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = mu, .damping = 100});
+    const MaterialHandle material = world.add_material({.young_modulus = 1e6, .friction = mu, .damping = 100});
     world.add_collider(Plane{});
     const Mesh block = mesh::box({side, side, side / 2}, {2, 2, 1}),
                above = mesh::box({side, side, side / 2}, {3, 3, 1});
-    const BodyHandle lower = world.add_body(block, {.material = of,
+    const BodyHandle lower = world.add_body(block, {.material = material,
                                                     .position = {0, 0, side / 4},
                                                     .contact_distance = 0,
                                                     .dynamics = BodyDynamics::implicit_elastic});
     const BodyHandle upper = world.add_body(
-        above, {.material = of, .position = {0, 0, 3 * side / 4}, .dynamics = BodyDynamics::explicit_elastic});
+        above, {.material = material, .position = {0, 0, 3 * side / 4}, .dynamics = BodyDynamics::explicit_elastic});
     std::vector<Index> bottom;
     for (std::size_t n = 0; n < above.nodes.size(); ++n)
         if (above.nodes[n].z() < 0) bottom.push_back(static_cast<Index>(n));
@@ -317,11 +317,11 @@ TEST_CASE("tied blocks slide with friction as one block", "[scene][ties]") {
 
 TEST_CASE("a slide holds along the normal only", "[scene][ties]") {
     World world(accurate({2, 0, 5}));  // pulls away from the collider
-    const MaterialHandle of = world.add_material({.young_modulus = 1e6});
+    const MaterialHandle material = world.add_material({.young_modulus = 1e6});
     const ColliderHandle plane = world.add_collider(Plane{});
     const Mesh cube = mesh::box({side, side, side}, {2, 2, 2});
     const BodyHandle body = world.add_body(
-        cube, {.material = of, .position = {0, 0, side / 2}, .dynamics = BodyDynamics::explicit_elastic});
+        cube, {.material = material, .position = {0, 0, side / 2}, .dynamics = BodyDynamics::explicit_elastic});
     std::vector<Index> bottom;
     for (std::size_t n = 0; n < cube.nodes.size(); ++n)
         if (cube.nodes[n].z() < -0.049) bottom.push_back(static_cast<Index>(n));

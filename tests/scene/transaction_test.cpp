@@ -108,7 +108,7 @@ TEST_CASE("between calls clusters are as stiff as their elements, so that no ref
         const auto stiffness = [&] {
             Real sum = 0;
             for (const ElementLane& modulus : state.model.elements.implicit_modulus)
-                for (const Real of : modulus.lane) sum += of;
+                for (const Real lane_modulus : modulus.lane) sum += lane_modulus;
             return sum;
         };
         const Real before = stiffness();
@@ -173,13 +173,14 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
 TEST_CASE("before a step is known to be good, it writes only data that the transaction restores", "[scene]") {
     Doomed scene(Integrator::leapfrog);
     WorldState& state = WorldAccess::state_of(scene.world);
-    const auto lies_in = [](const void* place, const Access& access) {
-        const auto at = reinterpret_cast<std::uintptr_t>(place);
+    const auto lies_in = [](const void* address, const Access& access) {
+        const auto at = reinterpret_cast<std::uintptr_t>(address);
         return at >= access.begin && at < access.end;
     };
-    const auto touches = [&](const StageDeclaration& stage, const void* place, bool writes) {
-        return std::ranges::any_of(
-            stage.accesses, [&](const Access& access) { return access.writes() == writes && lies_in(place, access); });
+    const auto touches = [&](const StageDeclaration& stage, const void* address, bool writes) {
+        return std::ranges::any_of(stage.accesses, [&](const Access& access) {
+            return access.writes() == writes && lies_in(address, access);
+        });
     };
     std::set<std::string> written;
     int behind_guard = 0;

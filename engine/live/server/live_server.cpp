@@ -107,10 +107,11 @@ LiveRequest request_of(const mg_request_info& info) {
 /// local port, getpeername for the remote port.
 template <class Call>
 int port_of(int socket, Call&& call) {
-    sockaddr_in place{};
-    socklen_t size = sizeof place;
-    const bool known = call(socket, reinterpret_cast<sockaddr*>(&place), &size) == 0 && place.sin_family == AF_INET;
-    return known ? ntohs(place.sin_port) : 0;
+    sockaddr_in address{};
+    socklen_t size = sizeof address;
+    const bool is_known =
+        call(socket, reinterpret_cast<sockaddr*>(&address), &size) == 0 && address.sin_family == AF_INET;
+    return is_known ? ntohs(address.sin_port) : 0;
 }
 
 /// Returns the socket of a connection, for which the library has no function; -1 if it is not found. `port`: port of
@@ -129,11 +130,11 @@ int socket_of(const mg_connection* connection, int port) {
 void connect_once(int port) {
     const int own = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (own < 0) return;
-    sockaddr_in place{};
-    place.sin_family = AF_INET;
-    place.sin_port = htons(static_cast<std::uint16_t>(port));
-    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    static_cast<void>(connect(own, reinterpret_cast<const sockaddr*>(&place), sizeof place));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    static_cast<void>(connect(own, reinterpret_cast<const sockaddr*>(&address), sizeof address));
     ::close(own);
 }
 

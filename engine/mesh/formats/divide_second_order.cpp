@@ -121,8 +121,8 @@ void divide_triangles(RawMesh& mesh) {
 }
 
 /// Returns the node in the middle of an edge, which the first call for the edge adds to the mesh.
-Index middle_node(Index a, Index b, RawMesh& mesh, MiddleNodes& known) {
-    const auto [place, added] = known.try_emplace(edge_key(a, b), static_cast<Index>(mesh.nodes.size()));
+Index middle_node(Index a, Index b, RawMesh& mesh, MiddleNodes& middle_nodes) {
+    const auto [place, added] = middle_nodes.try_emplace(edge_key(a, b), static_cast<Index>(mesh.nodes.size()));
     if (added)
         mesh.nodes.emplace_back((mesh.nodes[static_cast<std::size_t>(a)] + mesh.nodes[static_cast<std::size_t>(b)]) /
                                 2);
@@ -132,14 +132,14 @@ Index middle_node(Index a, Index b, RawMesh& mesh, MiddleNodes& known) {
 }  // namespace
 
 void add_middle_nodes(RawMesh& mesh) {
-    MiddleNodes known;
-    known.reserve(2 * (mesh.tetrahedra.size() + mesh.triangles.size()));
+    MiddleNodes middle_nodes;
+    middle_nodes.reserve(2 * (mesh.tetrahedra.size() + mesh.triangles.size()));
     const auto add = [&](const auto& elements, auto& middle) {
         middle.resize(elements.size());
         for (std::size_t i = 0; i < elements.size(); ++i)
             for (std::size_t e = 0; e < middle[i].size(); ++e)
                 middle[i][e] = middle_node(elements[i][second_order_edges[e][0]], elements[i][second_order_edges[e][1]],
-                                           mesh, known);
+                                           mesh, middle_nodes);
     };
     add(mesh.tetrahedra, mesh.middle);
     add(mesh.triangles, mesh.triangle_middle);

@@ -131,11 +131,11 @@ Header read_header(FileReader& reader) {
     header.binary = type == 1;
     if (header.binary && size != 8) reader.complain("data size", std::to_string(size), "8 (bytes per number)");
     if (header.binary) {
-        const auto one = reader.binary<std::uint32_t>("byte order");
-        if (one != 1 && one != 0x01000000)
-            reader.complain("byte order", std::to_string(one), "the integer 1, big-endian or little-endian",
+        const auto endian_mark = reader.binary<std::uint32_t>("byte order");
+        if (endian_mark != 1 && endian_mark != 0x01000000)
+            reader.complain("byte order", std::to_string(endian_mark), "the integer 1, big-endian or little-endian",
                             "the file is damaged; export it again");
-        reader.set_foreign_bytes(one != 1);
+        reader.set_foreign_bytes(endian_mark != 1);
     }
     if (const std::string_view end = reader.filled_line("$EndMeshFormat"); end != "$EndMeshFormat")
         reader.complain({}, in_quotes(end), "$EndMeshFormat");

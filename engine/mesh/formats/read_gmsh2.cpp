@@ -78,9 +78,9 @@ void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMes
                             std::string("at least 6 numbers: ") + element_row);
         const std::int64_t type = reader.parse_integer(words[1], "type");
         const std::size_t nodes = gmsh_node_count(type, reader);
-        if (const std::int64_t given = reader.parse_integer(words[4], "node count");
-            given != static_cast<std::int64_t>(nodes))
-            reader.complain("node count", std::to_string(given),
+        if (const std::int64_t tag_count = reader.parse_integer(words[4], "node count");
+            tag_count != static_cast<std::int64_t>(nodes))
+            reader.complain("node count", std::to_string(tag_count),
                             std::to_string(nodes) + ", the node count of elements of type " + std::to_string(type));
         require_words(reader, words.size(), 5 + nodes, element_row);
         const GmshTags tags{.physical = reader.parse_integer(words[2], "physical group"),

@@ -167,10 +167,10 @@ private:
             const std::int64_t nodes = reader_.integer(type, "node count");
             // Number of integers that the section has left, according to `size` in its header. So far c + 1 node counts
             // and all nodes of the cells before have been read.
-            const std::size_t left = size - std::min(size, cells_.offset.back() + c + 1);
-            if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
+            const std::size_t remaining = size - std::min(size, cells_.offset.back() + c + 1);
+            if (nodes < 0 || static_cast<std::uint64_t>(nodes) > remaining)
                 reader_.complain(
-                    "node count", std::to_string(nodes), "at most " + std::to_string(left),
+                    "node count", std::to_string(nodes), "at most " + std::to_string(remaining),
                     "only that many entries remain of the size in the header of this section; correct this size or the "
                     "node count of the cell");
             for (std::int64_t a = 0; a < nodes; ++a) cells_.node.push_back(read_node(type));

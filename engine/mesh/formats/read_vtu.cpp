@@ -123,10 +123,10 @@ private:
         return static_cast<std::size_t>(count);
     }
 
-    const VtkXmlArray& array_of(const Piece& piece, const std::string& of, const char* name) {
+    const VtkXmlArray& array_of(const Piece& piece, const std::string& piece_name, const char* name) {
         const auto found = piece.cells.find(name);
         if (found == piece.cells.end())
-            complain(piece.tag, of + ", <Cells>", std::string("no array \"") + name + "\"",
+            complain(piece.tag, piece_name + ", <Cells>", std::string("no array \"") + name + "\"",
                      "the arrays connectivity, offsets and types");
         return found->second;
     }

@@ -64,9 +64,9 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
             take_triangle(nodes, reader, mesh);
         } else {
             const auto* const kind = std::ranges::find(other_kinds, type, &CellKind::type);
-            const bool known = kind != std::end(other_kinds);
-            mesh.others[known ? kind->name : "cells of type " + std::to_string(type)] += 1;
-            mesh.curved_triangles += known && kind->name == curved_triangle;
+            const bool is_known = kind != std::end(other_kinds);
+            mesh.others[is_known ? kind->name : "cells of type " + std::to_string(type)] += 1;
+            mesh.curved_triangles += is_known && kind->name == curved_triangle;
         }
     }
 }

@@ -14,11 +14,11 @@ namespace {
 
 constexpr const char* damaged = "the file is damaged or incomplete; export it again";
 
-/// Returns the byte offset of the first `text` at or after the offset `from`. Throws SceneError if there is none.
-std::size_t place_of(std::string_view text, std::size_t from, FileReader& reader) {
-    const std::size_t found = bytes_of(reader).find(text, from);
+/// Returns the byte offset of the first `text` at or after the offset `begin`. Throws SceneError if there is none.
+std::size_t place_of(std::string_view text, std::size_t begin, FileReader& reader) {
+    const std::size_t found = bytes_of(reader).find(text, begin);
     if (found != std::string_view::npos) return found;
-    reader.go_to(from);
+    reader.go_to(begin);
     reader.complain({}, "no " + in_quotes(text) + " in the rest of the file", std::string(text), damaged);
 }
 

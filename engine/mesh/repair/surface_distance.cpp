@@ -16,28 +16,28 @@ Real longest_edge(const std::array<Vec3, 3>& x) {
 }
 
 /// Largest and mean distance from the points of one surface to the other surface [m].
-struct OneWay {
+struct OneSidedDistance {
     Real largest = 0, mean = 0;
 };
 
-OneWay distance_of(const SurfaceMesh& from, const SurfaceMesh& to) {
-    constexpr Real parts_of_mean_edge = 8;
+OneSidedDistance distance_of(const SurfaceMesh& measured, const SurfaceMesh& target) {
+    constexpr Real intervals_of_mean_edge = 8;
     // largest number of intervals per edge; it gives at most 2,145 sample points per triangle
-    constexpr int most_parts = 64;
+    constexpr int most_intervals = 64;
     // Upper bound of the number of sample points of a surface, approximately. A surface with many triangles gets fewer
     // points per triangle.
     constexpr Real most_points = 3e6;
-    const TriangleTree tree(to);
-    const Real mean = mean_edge(from), area = area_of(from);
-    const Real parts_of_all = std::sqrt(2 * most_points / static_cast<Real>(from.triangles.size()));
+    const TriangleTree tree(target);
+    const Real mean = mean_edge(measured), area = area_of(measured);
+    const Real affordable_intervals = std::sqrt(2 * most_points / static_cast<Real>(measured.triangles.size()));
     std::vector<Vec3> points;
-    OneWay found;
-    for (const std::array<Index, 3>& t : from.triangles) {
-        const std::array<Vec3, 3> x = corners(from, t);
+    OneSidedDistance found;
+    for (const std::array<Index, 3>& t : measured.triangles) {
+        const std::array<Vec3, 3> x = corners(measured, t);
         points.clear();
-        const Real share = mean > 0 ? longest_edge(x) / mean : 0;
-        const Real parts = std::ceil(std::min(parts_of_mean_edge, parts_of_all) * share);
-        sample_triangle(x, static_cast<int>(std::clamp<Real>(parts, 1, most_parts)), points);
+        const Real relative_length = mean > 0 ? longest_edge(x) / mean : 0;
+        const Real intervals = std::ceil(std::min(intervals_of_mean_edge, affordable_intervals) * relative_length);
+        sample_triangle(x, static_cast<int>(std::clamp<Real>(intervals, 1, most_intervals)), points);
         Real sum = 0;
         for (const Vec3& point : points) {
             const Real distance = std::sqrt(tree.distance_squared(point));
@@ -52,14 +52,14 @@ OneWay distance_of(const SurfaceMesh& from, const SurfaceMesh& to) {
 
 }  // namespace
 
-void sample_triangle(const std::array<Vec3, 3>& corner, int parts, std::vector<Vec3>& points) {
-    for (int i = 0; i <= parts; ++i)
-        for (int j = 0; i + j <= parts; ++j)
-            points.push_back(((parts - i - j) * corner[0] + i * corner[1] + j * corner[2]) / parts);
+void sample_triangle(const std::array<Vec3, 3>& corner, int intervals, std::vector<Vec3>& points) {
+    for (int i = 0; i <= intervals; ++i)
+        for (int j = 0; i + j <= intervals; ++j)
+            points.push_back(((intervals - i - j) * corner[0] + i * corner[1] + j * corner[2]) / intervals);
 }
 
 SurfaceDistance surface_distance(const SurfaceMesh& first, const SurfaceMesh& second) {
-    const OneWay from_first = distance_of(first, second), from_second = distance_of(second, first);
+    const OneSidedDistance from_first = distance_of(first, second), from_second = distance_of(second, first);
     return {from_first.largest, from_second.largest, from_first.mean, from_second.mean};
 }
 

@@ -9,8 +9,8 @@
 namespace skerry::mesh {
 
 /// Appends points of a regular lattice on a triangle to `points`, including the corners. Neighbouring points are at
-/// most (longest edge / `parts`) apart.
-void sample_triangle(const std::array<Vec3, 3>& corner, int parts, std::vector<Vec3>& points);
+/// most (longest edge / `intervals`) apart.
+void sample_triangle(const std::array<Vec3, 3>& corner, int intervals, std::vector<Vec3>& points);
 
 /// Measures the distance between two surfaces in both directions, because one direction alone misses a bump that the
 /// other surface lacks. The distance of each sample point is exact; the sample points are a lattice on the triangles.

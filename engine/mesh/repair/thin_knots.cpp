@@ -30,7 +30,7 @@ constexpr Real least_turn = 0.5;
 // mean normal of all removed triangles. This is the smallest allowed cosine between the two normals.
 constexpr Real least_turn_of_flat = 0.2;
 // Number of intervals per edge of a triangle. It gives 15 sample points per triangle, at which distances are measured.
-constexpr int parts = 4;
+constexpr int intervals_per_edge = 4;
 
 Vec3 area_vector(const Corners& x) {
     return (x[1] - x[0]).cross(x[2] - x[0]);
@@ -45,13 +45,13 @@ Real altitude_of(const Corners& x) {
 
 /// A local change of the surface: triangles to remove, and the triangles that replace them.
 struct Change {
-    std::vector<Index> gone;
-    std::vector<Triangle> made;
-    // For each new triangle in `made`: the removed triangle of `gone` that the new triangle replaces.
-    std::vector<Index> made_from;
+    std::vector<Index> removed;
+    std::vector<Triangle> added;
+    // For each new triangle in `added`: the removed triangle of `removed` that the new triangle replaces.
+    std::vector<Index> replaced;
     // For an edge collapse: the node that remains, and the node that is removed.
-    Index moved = no_index, lost = no_index;
-    Vec3 position = Vec3::Zero();  // new position of the node `moved` [m]
+    Index kept = no_index, merged = no_index;
+    Vec3 position = Vec3::Zero();  // new position of the node `kept` [m]
     Real altitude = 0;             // smallest altitude of the new triangles [m]
 };
 
@@ -61,19 +61,19 @@ public:
         : settings_(settings), original_(surface), nodes_(surface.nodes), around_(surface.nodes.size()) {
         for (const Triangle& t : surface.triangles) {
             add(t);
-            sample_triangle(corners(t), parts, samples_.back());
+            sample_triangle(corners(t), intervals_per_edge, samples_.back());
         }
     }
 
     ThinnedSurface run() {
         ThinnedSurface result;
-        for (std::size_t t = 0; t < triangles_.size(); ++t) ask(static_cast<Index>(t));
+        for (std::size_t t = 0; t < triangles_.size(); ++t) queue_if_flat(static_cast<Index>(t));
         while (!flat_.empty()) {
             const Index worst = flat_.begin()->second;
             flat_.erase(flat_.begin());
             const std::optional<Change> best = best_change(worst);
             if (!best) continue;
-            ++(best->lost == no_index ? result.flipped : result.collapsed);
+            ++(best->merged == no_index ? result.flipped : result.collapsed);
             apply(*best);
         }
         result.surface = compact();
@@ -89,7 +89,7 @@ private:
     Corners corners(const Triangle& t, const Change& change) const {
         Corners x = corners(t);
         for (std::size_t a = 0; a < 3; ++a)
-            if (t[a] == change.moved) x[a] = change.position;
+            if (t[a] == change.kept) x[a] = change.position;
         return x;
     }
 
@@ -101,7 +101,7 @@ private:
     }
 
     /// Adds a triangle to flat_ if it is not removed and its altitude is below settings_.altitude.
-    void ask(Index t) {
+    void queue_if_flat(Index t) {
         const Real altitude = altitude_of(corners(triangle(t)));
         if (alive_[static_cast<std::size_t>(t)] && altitude < settings_.altitude) flat_.emplace(altitude, t);
     }
@@ -126,19 +126,19 @@ private:
     std::optional<Change> best_change(Index worst) const {
         std::optional<Change> best;
         const auto offer = [&](std::optional<Change> change) {
-            if (change && (!best || change->altitude > best->altitude) && judge(*change)) best = std::move(change);
+            if (change && (!best || change->altitude > best->altitude) && is_allowed(*change)) best = std::move(change);
         };
         for (std::size_t a = 0; a < 3; ++a) {
-            const Index from = triangle(worst)[a], to = triangle(worst)[(a + 1) % 3];
-            for (const Real place : {0.0, 0.5, 1.0}) offer(collapse(from, to, place));
-            offer(flip(from, to));
+            const Index start = triangle(worst)[a], end = triangle(worst)[(a + 1) % 3];
+            for (const Real fraction : {0.0, 0.5, 1.0}) offer(collapse(start, end, fraction));
+            offer(flip(start, end));
         }
         return best;
     }
 
-    /// Collapses the edge between the nodes a and b. Both nodes move to the point a + place (b - a), and the node with
-    /// the lower number remains.
-    std::optional<Change> collapse(Index a, Index b, Real place) const {
+    /// Collapses the edge between the nodes a and b. Both nodes move to the point a + fraction (b - a), and the node
+    /// with the lower number remains.
+    std::optional<Change> collapse(Index a, Index b, Real fraction) const {
         const std::vector<Index> sides = triangles_with(a, b), near_a = neighbours(a), near_b = neighbours(b);
         std::vector<Index> common;
         std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
@@ -146,27 +146,27 @@ private:
         // the surface of a tetrahedron, the smallest closed surface, both have three neighbours; it is not collapsed.
         if (sides.size() != 2 || common.size() != 2 || near_a.size() + near_b.size() <= 6) return std::nullopt;
         Change change;
-        change.position = (1 - place) * node(a) + place * node(b);
-        change.moved = std::min(a, b);
-        change.lost = std::max(a, b);
-        change.gone = around(a);
+        change.position = (1 - fraction) * node(a) + fraction * node(b);
+        change.kept = std::min(a, b);
+        change.merged = std::max(a, b);
+        change.removed = around(a);
         for (const Index t : around(b))
-            if (std::find(sides.begin(), sides.end(), t) == sides.end()) change.gone.push_back(t);
-        for (const Index t : change.gone) {
+            if (std::find(sides.begin(), sides.end(), t) == sides.end()) change.removed.push_back(t);
+        for (const Index t : change.removed) {
             if (std::find(sides.begin(), sides.end(), t) != sides.end()) continue;
-            Triangle made = triangle(t);
-            std::replace(made.begin(), made.end(), change.lost, change.moved);
-            change.made.push_back(made);
-            change.made_from.push_back(t);
+            Triangle added = triangle(t);
+            std::replace(added.begin(), added.end(), change.merged, change.kept);
+            change.added.push_back(added);
+            change.replaced.push_back(t);
         }
-        return finished(std::move(change));
+        return if_improves(std::move(change));
     }
 
     std::optional<Change> flip(Index a, Index b) const {
         const std::vector<Index> sides = triangles_with(a, b);
         if (sides.size() != 2) return std::nullopt;
         Change change;
-        change.gone = change.made_from = sides;
+        change.removed = change.replaced = sides;
         std::array<Index, 2> apex{};
         for (std::size_t s = 0; s < 2; ++s)
             apex[s] = *std::find_if(triangle(sides[s]).begin(), triangle(sides[s]).end(),
@@ -175,11 +175,11 @@ private:
         // Each new triangle is an old one in which an end of the flipped edge is replaced by the apex of the other old
         // triangle.
         for (std::size_t s = 0; s < 2; ++s) {
-            Triangle made = triangle(sides[s]);
-            std::replace(made.begin(), made.end(), next_after(made, apex[s]), apex[1 - s]);
-            change.made.push_back(made);
+            Triangle added = triangle(sides[s]);
+            std::replace(added.begin(), added.end(), next_after(added, apex[s]), apex[1 - s]);
+            change.added.push_back(added);
         }
-        return finished(std::move(change));
+        return if_improves(std::move(change));
     }
 
     static Index next_after(const Triangle& t, Index n) {
@@ -190,23 +190,23 @@ private:
 
     /// Stores in the change the smallest altitude of its new triangles. Returns nullopt unless this altitude exceeds
     /// the smallest altitude of the removed triangles by the factor least_gain.
-    std::optional<Change> finished(Change change) const {
+    std::optional<Change> if_improves(Change change) const {
         Real before = infinity;
-        for (const Index t : change.gone) before = std::min(before, altitude_of(corners(triangle(t))));
+        for (const Index t : change.removed) before = std::min(before, altitude_of(corners(triangle(t))));
         change.altitude = infinity;
-        for (const Triangle& t : change.made)
+        for (const Triangle& t : change.added)
             change.altitude = std::min(change.altitude, altitude_of(corners(t, change)));
         if (!(change.altitude > least_gain * before)) return std::nullopt;
         return change;
     }
 
-    bool judge(const Change& change) const { return keeps_sides(change) && keeps_distance(change); }
+    bool is_allowed(const Change& change) const { return keeps_sides(change) && keeps_distance(change); }
 
     bool keeps_sides(const Change& change) const {
         Vec3 mean = Vec3::Zero();
-        for (const Index t : change.gone) mean += area_vector(corners(triangle(t)));
-        for (std::size_t i = 0; i < change.made.size(); ++i) {
-            const Corners before = corners(triangle(change.made_from[i])), after = corners(change.made[i], change);
+        for (const Index t : change.removed) mean += area_vector(corners(triangle(t)));
+        for (std::size_t i = 0; i < change.added.size(); ++i) {
+            const Corners before = corners(triangle(change.replaced[i])), after = corners(change.added[i], change);
             const bool flat = altitude_of(before) < settings_.altitude;
             const Vec3 towards = flat ? mean : area_vector(before), normal = area_vector(after);
             if (!(normal.dot(towards) > (flat ? least_turn_of_flat : least_turn) * normal.norm() * towards.norm()))
@@ -217,11 +217,11 @@ private:
 
     bool keeps_distance(const Change& change) const {
         const Real limit = std::pow(share_of_tolerance * settings_.tolerance, 2);
-        for (const Index t : change.gone)
+        for (const Index t : change.removed)
             for (const Vec3& point : samples_[static_cast<std::size_t>(t)])
                 if (nearest_made(change, point).second > limit) return false;
         std::vector<Vec3> points;
-        for (const Triangle& t : change.made) sample_triangle(corners(t, change), parts, points);
+        for (const Triangle& t : change.added) sample_triangle(corners(t, change), intervals_per_edge, points);
         return std::all_of(points.begin(), points.end(),
                            [&](const Vec3& point) { return original_.distance_squared(point, 2 * limit) <= limit; });
     }
@@ -230,8 +230,8 @@ private:
     /// triangle [m^2].
     std::pair<std::size_t, Real> nearest_made(const Change& change, const Vec3& point) const {
         std::pair<std::size_t, Real> nearest{0, infinity};
-        for (std::size_t i = 0; i < change.made.size(); ++i) {
-            const Corners x = corners(change.made[i], change);
+        for (std::size_t i = 0; i < change.added.size(); ++i) {
+            const Corners x = corners(change.added[i], change);
             const Real distance = closest_point_on_triangle(point, x[0], x[1], x[2]).distance_squared;
             if (distance < nearest.second) nearest = {i, distance};
         }
@@ -239,8 +239,8 @@ private:
     }
 
     void apply(const Change& change) {
-        std::vector<std::vector<Vec3>> samples(change.made.size());
-        for (const Index t : change.gone) {
+        std::vector<std::vector<Vec3>> samples(change.added.size());
+        for (const Index t : change.removed) {
             for (const Vec3& point : samples_[static_cast<std::size_t>(t)])
                 samples[nearest_made(change, point).first].push_back(point);
             flat_.erase({altitude_of(corners(triangle(t))), t});
@@ -248,17 +248,17 @@ private:
             alive_[static_cast<std::size_t>(t)] = false;
             for (const Index n : triangle(t)) std::erase(around(n), t);
         }
-        if (change.moved != no_index) nodes_[static_cast<std::size_t>(change.moved)] = change.position;
+        if (change.kept != no_index) nodes_[static_cast<std::size_t>(change.kept)] = change.position;
         const auto first = static_cast<Index>(triangles_.size());
-        for (std::size_t i = 0; i < change.made.size(); ++i) {
-            add(change.made[i]);
+        for (std::size_t i = 0; i < change.added.size(); ++i) {
+            add(change.added[i]);
             samples_.back() = std::move(samples[i]);
         }
         // Flat triangles next to the new triangles are examined again, because changes that were rejected before may
         // now be possible.
         for (auto t = first; t < static_cast<Index>(triangles_.size()); ++t)
             for (const Index n : triangle(t))
-                for (const Index beside : around(n)) ask(beside);
+                for (const Index beside : around(n)) queue_if_flat(beside);
     }
 
     SurfaceMesh compact() const {

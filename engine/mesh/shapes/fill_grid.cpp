@@ -4,26 +4,26 @@
 
 namespace skerry::mesh {
 
-void append_lines(Real from, Real to, int count, std::vector<Real>& lines) {
-    if (lines.empty()) lines.push_back(from);
-    for (int i = 1; i < count; ++i) lines.push_back(from + (to - from) * i / count);
-    lines.push_back(to);
+void append_lines(Real lower, Real upper, int count, std::vector<Real>& lines) {
+    if (lines.empty()) lines.push_back(lower);
+    for (int i = 1; i < count; ++i) lines.push_back(lower + (upper - lower) * i / count);
+    lines.push_back(upper);
 }
 
-Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>& cell)> keep) {
+Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>& cell)> accepts) {
     const auto lines_along = [&](std::size_t axis) { return static_cast<int>(lines[axis].size()); };
     std::vector<Index> row(lines[0].size() * lines[1].size() * lines[2].size(), no_index);
     Mesh mesh;
     const auto node_at = [&](const std::array<int, 3>& p) {
-        const auto place =
+        const auto grid_index =
             (static_cast<std::size_t>(p[2]) * lines[1].size() + static_cast<std::size_t>(p[1])) * lines[0].size() +
             static_cast<std::size_t>(p[0]);
-        if (row[place] == no_index) {
-            row[place] = static_cast<Index>(mesh.nodes.size());
+        if (row[grid_index] == no_index) {
+            row[grid_index] = static_cast<Index>(mesh.nodes.size());
             mesh.nodes.emplace_back(lines[0][static_cast<std::size_t>(p[0])], lines[1][static_cast<std::size_t>(p[1])],
                                     lines[2][static_cast<std::size_t>(p[2])]);
         }
-        return row[place];
+        return row[grid_index];
     };
 
     // Each permutation of the three axes gives a path along three edges of the cell, from one end of its space diagonal
@@ -35,7 +35,7 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
     for (cell[2] = 0; cell[2] + 1 < lines_along(2); ++cell[2])
         for (cell[1] = 0; cell[1] + 1 < lines_along(1); ++cell[1])
             for (cell[0] = 0; cell[0] + 1 < lines_along(0); ++cell[0]) {
-                if (!keep(cell)) continue;
+                if (!accepts(cell)) continue;
                 for (const std::array<std::size_t, 3>& walk : walks) {
                     std::array<int, 3> corner;  // corner of the cell that is farthest from the middle of the grid
                     for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = cell[axis] + (mirrored(axis) ? 1 : 0);

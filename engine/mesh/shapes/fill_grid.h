@@ -12,15 +12,15 @@ namespace skerry::mesh {
 /// Ascending coordinates of the grid lines along x, y and z.
 using GridLines = std::array<std::vector<Real>, 3>;
 
-/// Appends the grid lines of `count` equal cells from `from` to `to`. `lines` must be empty or end at `from`.
-void append_lines(Real from, Real to, int count, std::vector<Real>& lines);
+/// Appends the grid lines of `count` equal cells from `lower` to `upper`. `lines` must be empty or end at `lower`.
+void append_lines(Real lower, Real upper, int count, std::vector<Real>& lines);
 
-/// Adds six tetrahedra for each cell that `keep` accepts (Kuhn's triangulation). The diagonal of a cell points towards
-/// the middle of the grid. The eight octants of the grid are divided as mirror images of each other, so that a
-/// symmetric body moves symmetrically. Nodes that no accepted cell uses are omitted. The smallest altitude is 0.71 of
-/// the edge of a cubic cell. Mirroring every pair of neighbouring cells would suit linear tetrahedra better, but
-/// smoothed elements much worse (docs/methods/elasticity.md 7.3): the edges along diagonals would then meet in every
-/// other node.
-Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>& cell)> keep);
+/// Adds six tetrahedra for each cell for which accepts(cell) is true (Kuhn's triangulation). The diagonal of a cell
+/// points towards the middle of the grid. The eight octants of the grid are divided as mirror images of each other, so
+/// that a symmetric body moves symmetrically. Nodes that no accepted cell uses are omitted. The smallest altitude is
+/// 0.71 of the edge of a cubic cell. Mirroring every pair of neighbouring cells would suit linear tetrahedra better,
+/// but smoothed elements much worse (docs/methods/elasticity.md 7.3): the edges along diagonals would then meet in
+/// every other node.
+Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>& cell)> accepts);
 
 }  // namespace skerry::mesh

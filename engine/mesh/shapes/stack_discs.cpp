@@ -16,8 +16,8 @@ namespace {
 int ring_begin(int ring) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
-int on_ring(int ring, int place) {
-    return ring == 0 ? 0 : ring_begin(ring) + place % (6 * ring);
+int node_on_ring(int ring, int ring_index) {
+    return ring == 0 ? 0 : ring_begin(ring) + ring_index % (6 * ring);
 }
 int disc_size(int rings) {
     return ring_begin(rings + 1);
@@ -31,11 +31,12 @@ std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
     for (int ring = 1; ring <= rings; ++ring)
-        for (int place = 0; place < 6 * ring; ++place) {
-            const auto sector = static_cast<std::size_t>(place / ring);
+        for (int ring_index = 0; ring_index < 6 * ring; ++ring_index) {
+            const auto sector = static_cast<std::size_t>(ring_index / ring);
             const std::array<int, 2>&out = direction[sector], &along = direction[(sector + 2) % 6];
-            const int p = ring * out[0] + place % ring * along[0], q = ring * out[1] + place % ring * along[1];
-            colour[static_cast<std::size_t>(on_ring(ring, place))] = ((p - q) % 3 + 3) % 3;
+            const int p = ring * out[0] + ring_index % ring * along[0],
+                      q = ring * out[1] + ring_index % ring * along[1];
+            colour[static_cast<std::size_t>(node_on_ring(ring, ring_index))] = ((p - q) % 3 + 3) % 3;
         }
     return colour;
 }
@@ -46,10 +47,11 @@ template <class Wide, class Narrow>
 void for_each_triangle(int ring, Wide&& wide, Narrow&& narrow) {
     for (int sector = 0; sector < 6; ++sector)
         for (int j = 0; j < ring; ++j) {
-            const int outer = on_ring(ring, sector * ring + j), outer_next = on_ring(ring, sector * ring + j + 1);
-            const int inner = on_ring(ring - 1, sector * (ring - 1) + j);
+            const int outer = node_on_ring(ring, sector * ring + j),
+                      outer_next = node_on_ring(ring, sector * ring + j + 1);
+            const int inner = node_on_ring(ring - 1, sector * (ring - 1) + j);
             wide(outer, outer_next, inner);
-            if (j + 1 < ring) narrow(inner, on_ring(ring - 1, sector * (ring - 1) + j + 1), outer_next);
+            if (j + 1 < ring) narrow(inner, node_on_ring(ring - 1, sector * (ring - 1) + j + 1), outer_next);
         }
 }
 
@@ -72,8 +74,8 @@ private:
         first_.push_back(static_cast<Index>(mesh_.nodes.size()));
         mesh_.nodes.emplace_back(0, 0, disc.z);
         for (int ring = 1; ring <= disc.rings; ++ring)
-            for (int place = 0; place < 6 * ring; ++place) {
-                const Real angle = 2 * std::acos(Real{-1}) * place / (6 * ring),
+            for (int ring_index = 0; ring_index < 6 * ring; ++ring_index) {
+                const Real angle = 2 * std::acos(Real{-1}) * ring_index / (6 * ring),
                            radius = disc.radius * ring / disc.rings;
                 mesh_.nodes.emplace_back(radius * std::cos(angle), radius * std::sin(angle), disc.z);
             }
@@ -101,12 +103,12 @@ private:
     /// True if the diagonal of the wall (rectangular side face of a prism) over the edge (`from`, `to`) rises from
     /// `from` to `to`. In even layers it rises towards the node of higher colour, in odd layers towards the node of
     /// lower colour.
-    bool cut_rises(std::size_t layer, int from, int to) const {
+    bool diagonal_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }
 
     void add_prism(std::size_t layer, std::array<int, 3> n) {
-        std::sort(n.begin(), n.end(), [&](int a, int b) { return cut_rises(layer, a, b); });
+        std::sort(n.begin(), n.end(), [&](int a, int b) { return diagonal_rises(layer, a, b); });
         for (std::size_t step = 0; step < 3; ++step) {
             std::array<Index, 4> nodes;
             for (std::size_t a = 0; a <= step; ++a) nodes[a] = node(layer, n[a]);
@@ -118,7 +120,7 @@ private:
     /// Adds a pyramid as two tetrahedra. Its base is the wall (rectangular side face of a prism) over nodes a and b,
     /// and its apex is the node `tip`.
     void add_pyramid(std::size_t layer, int a, int b, Index tip) {
-        if (!cut_rises(layer, a, b)) std::swap(a, b);
+        if (!diagonal_rises(layer, a, b)) std::swap(a, b);
         add_tetrahedron(mesh_, {node(layer, a), node(layer, b), node(layer + 1, b), tip});
         add_tetrahedron(mesh_, {node(layer, a), node(layer + 1, a), node(layer + 1, b), tip});
     }

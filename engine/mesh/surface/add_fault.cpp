@@ -4,7 +4,8 @@
 
 namespace skerry::mesh {
 
-SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index triangle, const Vec3& place, Index other) {
+SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index triangle, const Vec3& position,
+                        Index other) {
     std::size_t row = 0;
     while (row < report.faults.size() && report.faults[row].kind < kind) ++row;
     if (row == report.faults.size() || report.faults[row].kind != kind) {
@@ -13,7 +14,7 @@ SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index tria
         };
         report.faults.insert(
             report.faults.begin() + static_cast<std::ptrdiff_t>(row),
-            {.kind = kind, .count = 0, .triangle = number_of(triangle), .other = number_of(other), .place = place});
+            {.kind = kind, .count = 0, .triangle = number_of(triangle), .other = number_of(other), .place = position});
     }
     ++report.faults[row].count;
     return report.faults[row];

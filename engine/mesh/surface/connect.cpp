@@ -95,31 +95,31 @@ bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto
         const Vec3 arm = at(nodes[static_cast<std::size_t>(3 - side.corner[0] % 3 - side.corner[1] % 3)]) - low;
         return arm - along.dot(arm) * along;
     };
-    struct Place {
+    struct SideAngle {
         long angle;  // angle around the edge from its first triangle, in units of 1e-6 rad
         bool opens;  // true: the volume behind the triangle is on the side of larger angles
         std::size_t side;
     };
     constexpr Real step = 1e-6;
-    const long whole = std::lround(2 * std::numbers::pi / step);
+    const long full_turn = std::lround(2 * std::numbers::pi / step);
     const Vec3 zero = direction_of(edge[0]);
-    std::vector<Place> places;
+    std::vector<SideAngle> by_angle;
     for (std::size_t s = 0; s < edge.size(); ++s) {
         const Vec3 arm = direction_of(edge[s]);
         const Real angle = std::atan2(along.dot(zero.cross(arm)), zero.dot(arm));
-        places.push_back({(std::lround(angle / step) + whole) % whole, !edge[s].rises(), s});
+        by_angle.push_back({(std::lround(angle / step) + full_turn) % full_turn, !edge[s].rises(), s});
     }
-    std::ranges::sort(places, {}, [](const Place& p) { return std::tuple(p.angle, p.opens, p.side); });
+    std::ranges::sort(by_angle, {}, [](const SideAngle& p) { return std::tuple(p.angle, p.opens, p.side); });
     std::vector<std::size_t> open;
     bool overlap = false;
     std::vector<bool> paired(edge.size(), false);
-    for (std::size_t i = 0; i < 2 * places.size(); ++i) {  // two turns: a volume across angle 0 ends in the second
-        const Place& place = places[i % places.size()];
-        if (paired[place.side]) continue;
-        if (place.opens && i < places.size()) open.push_back(place.side);
-        if (place.opens || open.empty()) continue;
-        paired[place.side] = paired[open.back()] = true;
-        visit(edge[place.side], edge[open.back()]);
+    for (std::size_t i = 0; i < 2 * by_angle.size(); ++i) {  // two turns: a volume across angle 0 ends in the second
+        const SideAngle& here = by_angle[i % by_angle.size()];
+        if (paired[here.side]) continue;
+        if (here.opens && i < by_angle.size()) open.push_back(here.side);
+        if (here.opens || open.empty()) continue;
+        paired[here.side] = paired[open.back()] = true;
+        visit(edge[here.side], edge[open.back()]);
         open.pop_back();
         overlap = overlap || !open.empty();
     }

@@ -77,10 +77,10 @@ PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
     return PairFault::overlap;
 }
 
-/// Length of the ray from `origin`, a point of triangle `from`, to the first triangle that shares no node with `from`;
-/// at most `limit` [m].
-Real free_path(const SurfaceMesh& surface, const BoxTree& tree, Index from, const Vec3& origin, const Vec3& direction,
-               Real limit) {
+/// Length of the ray from `origin`, a point of triangle `start_triangle`, to the first triangle that shares no node
+/// with `start_triangle`; at most `limit` [m].
+Real free_path(const SurfaceMesh& surface, const BoxTree& tree, Index start_triangle, const Vec3& origin,
+               const Vec3& direction, Real limit) {
     Real nearest = limit;
     const auto meets = [&](const Aabb& box) {
         Real enter = 0, leave = nearest;
@@ -92,7 +92,7 @@ Real free_path(const SurfaceMesh& surface, const BoxTree& tree, Index from, cons
         }
         return enter <= leave;
     };
-    const std::array<Index, 3>& own = surface.triangles[static_cast<std::size_t>(from)];
+    const std::array<Index, 3>& own = surface.triangles[static_cast<std::size_t>(start_triangle)];
     tree.for_each(meets, [&](Index t) {
         const std::array<Index, 3>& nodes = surface.triangles[static_cast<std::size_t>(t)];
         if (std::ranges::find_first_of(nodes, own) != nodes.end()) return;

@@ -190,25 +190,25 @@ void nest(SurfaceReport& report, const SurroundedTriangles& surrounded) {
 }
 
 /// Reverses the triangles of each outermost shell of negative volume, and those of the shells inside it.
-void turn_inside_out(SurfaceReport& report) {
-    std::vector<bool> turned(report.shells.size(), false);
-    for (std::size_t s = 0; s < turned.size(); ++s) {
+void reverse_negative_shells(SurfaceReport& report) {
+    std::vector<bool> reversed(report.shells.size(), false);
+    for (std::size_t s = 0; s < reversed.size(); ++s) {
         std::size_t outermost = s;
         while (report.shells[outermost].around != no_index)
             outermost = static_cast<std::size_t>(report.shells[outermost].around);
-        turned[s] = report.shells[outermost].volume < 0;
+        reversed[s] = report.shells[outermost].volume < 0;
     }
-    if (std::ranges::count(turned, true) == 0) return;
+    if (std::ranges::count(reversed, true) == 0) return;
     for (std::size_t t = 0; t < report.shell.size(); ++t) {
         const auto own = static_cast<std::size_t>(report.shell[t]);
         SurfaceShell& shell = report.shells[own];
-        if (!turned[own]) continue;
+        if (!reversed[own]) continue;
         if (report.number[t] == shell.triangle && shell.around == no_index)
             add_fault(report, SurfaceFaultKind::inside_out_shells, static_cast<Index>(t));
         std::swap(report.cleaned.triangles[t][1], report.cleaned.triangles[t][2]);
     }
-    for (std::size_t s = 0; s < turned.size(); ++s)
-        if (turned[s]) report.shells[s].volume *= -1;
+    for (std::size_t s = 0; s < reversed.size(); ++s)
+        if (reversed[s]) report.shells[s].volume *= -1;
 }
 
 }  // namespace
@@ -222,21 +222,21 @@ bool drop_repeated_shells(SurfaceReport& report, Real distance, bool keep_walls)
     const BoxTree tree(boxes);
     std::vector<bool> dropped(sizes.size(), false);
     for (std::size_t s = 0; s < sizes.size(); ++s) {
-        std::size_t same = s;  // first shell that this one repeats
-        Real apart = 0;        // [m]
+        std::size_t repeated = s;       // first shell that this one repeats
+        Real distance_to_repeated = 0;  // [m]
         tree.for_each_overlap(boxes[s], [&](Index other) {
             const auto row = static_cast<std::size_t>(other);
-            if (row >= same || dropped[row]) return;
+            if (row >= repeated || dropped[row]) return;
             if (const std::optional<Real> found = repeats(report, sizes, rows, row, s, distance, keep_walls)) {
-                same = row;
-                apart = *found;
+                repeated = row;
+                distance_to_repeated = *found;
             }
         });
-        dropped[s] = same < s;
+        dropped[s] = repeated < s;
         if (!dropped[s]) continue;
         SurfaceFault& fault =
-            add_fault(report, SurfaceFaultKind::duplicate_shells, rows[s].front(), rows[same].front());
-        fault.length = std::max(fault.length, apart);
+            add_fault(report, SurfaceFaultKind::duplicate_shells, rows[s].front(), rows[repeated].front());
+        fault.length = std::max(fault.length, distance_to_repeated);
     }
     if (std::ranges::count(dropped, true) == 0) return false;
     keep_triangles(report, [&](std::size_t t) { return !dropped[static_cast<std::size_t>(report.shell[t])]; });
@@ -261,7 +261,7 @@ void compare_shells(SurfaceReport& report) {
     if (std::ranges::count(report.shells, true, &SurfaceShell::closed) > 1)
         surrounded = surrounded_triangles(report, sizes);
     nest(report, surrounded);
-    turn_inside_out(report);
+    reverse_negative_shells(report);
     const auto sign_of = [&](Index shell) {
         return report.shells[static_cast<std::size_t>(shell)].volume > 0 ? 1 : -1;
     };

@@ -21,8 +21,8 @@ struct Bending {
     Vec3 tangent, across, normal;  // orthonormal: axis of the bent part, axis of rotation, and direction of the column
     Real poisson_ratio, young_modulus;
 
-    Vec3 displacement(const Vec3& place) const {
-        const Vec3 d = place - middle;
+    Vec3 displacement(const Vec3& point) const {
+        const Vec3 d = point - middle;
         const Real s = d.dot(tangent), y = d.dot(across), z = d.dot(normal);
         return -s * z * tangent + poisson_ratio * z * y * across +
                (s * s + poisson_ratio * (z * z - y * y)) / 2 * normal;

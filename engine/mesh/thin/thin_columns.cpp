@@ -36,16 +36,16 @@ struct NearBoundary {
 
 NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary) {
     enum : std::uint8_t { far, next, outer };
-    std::vector<std::uint8_t> place(mesh.nodes.size(), far);
+    std::vector<std::uint8_t> level(mesh.nodes.size(), far);
     for (const std::array<Index, 3>& triangle : boundary)
-        for (const Index n : triangle) place[static_cast<std::size_t>(n)] = outer;
+        for (const Index n : triangle) level[static_cast<std::size_t>(n)] = outer;
     const auto touches = [&](const std::array<Index, 4>& tetrahedron, std::uint8_t least) {
-        return std::ranges::any_of(tetrahedron, [&](Index n) { return place[static_cast<std::size_t>(n)] >= least; });
+        return std::ranges::any_of(tetrahedron, [&](Index n) { return level[static_cast<std::size_t>(n)] >= least; });
     };
     for (const std::array<Index, 4>& tetrahedron : mesh.tetrahedra)
         if (touches(tetrahedron, outer))
             for (const Index n : tetrahedron)
-                place[static_cast<std::size_t>(n)] = std::max<std::uint8_t>(place[static_cast<std::size_t>(n)], next);
+                level[static_cast<std::size_t>(n)] = std::max<std::uint8_t>(level[static_cast<std::size_t>(n)], next);
 
     NearBoundary near;
     std::vector<std::array<Index, 4>> tetrahedra;
@@ -65,7 +65,7 @@ NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3
             near.beyond[row][corner] = {faces[f].tetrahedron, faces[f].corner};
             near.beyond[static_cast<std::size_t>(faces[f].tetrahedron)][faces[f].corner] = face;
         } else if (std::ranges::all_of(faces[f].node,
-                                       [&](Index n) { return place[static_cast<std::size_t>(n)] == outer; })) {
+                                       [&](Index n) { return level[static_cast<std::size_t>(n)] == outer; })) {
             // A face that only one of these tetrahedra has is on the boundary if all of its nodes are boundary nodes.
             // Otherwise its other tetrahedron is not near the boundary, and therefore not in the list.
             near.on_boundary[row][corner] = true;

@@ -100,11 +100,11 @@ Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
     return place;
 }
 
-/// Terms of the deformation gradients of the nodes in `wanted`. Volume times gradient of a tetrahedron is the sum of x
-/// a^T / 3 over its corners, where x is the position of the corner and a the inward area vector of the opposite face at
-/// rest.
+/// Terms of the deformation gradients of the nodes for which `is_needed` is true. Volume times gradient of a
+/// tetrahedron is the sum of x a^T / 3 over its corners, where x is the position of the corner and a the inward area
+/// vector of the opposite face at rest.
 Ragged<GradientTerm> gradients_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
-                                  const std::vector<bool>& wanted) {
+                                  const std::vector<bool>& is_needed) {
     std::vector<std::vector<GradientTerm>> terms(nodes.size());
     std::vector<Real> volume(nodes.size(), 0);
     for (const std::array<Index, 4>& corners : tetrahedra) {
@@ -114,7 +114,7 @@ Ragged<GradientTerm> gradients_of(std::span<const Vec3> nodes, std::span<const s
         area[0] = -(area[1] + area[2] + area[3]);
         for (const Index corner : corners) {
             const auto n = static_cast<std::size_t>(corner);
-            if (!wanted[n]) continue;
+            if (!is_needed[n]) continue;
             volume[n] += u.dot(v.cross(w)) / 6;
             for (std::size_t k = 0; k < 4; ++k) {
                 const auto known = std::ranges::find(terms[n], corners[k], &GradientTerm::node);
@@ -163,17 +163,17 @@ void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes, std::span<c
     const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
     visual.fit.warning = warning_of(visual, nodes, infinity);
     if (triangles.empty()) {
-        for (const Vec3& place : visual.surface.nodes)
-            visual.point.push_back(point_of_tetrahedron(nodes, corners, place));
+        for (const Vec3& node : visual.surface.nodes)
+            visual.point.push_back(point_of_tetrahedron(nodes, corners, node));
         return;
     }
     const SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {triangles.begin(), triangles.end()}};
     const RestShape shape(nodes, {}, surface);
-    std::vector<bool> wanted(nodes.size(), false);
-    for (const Vec3& place : visual.surface.nodes) {
-        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, Vec3::Zero()));
-        visual.offset.push_back(place - position_of(point, nodes));
-        for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
+    std::vector<bool> is_needed(nodes.size(), false);
+    for (const Vec3& node : visual.surface.nodes) {
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(node, Vec3::Zero()));
+        visual.offset.push_back(node - position_of(point, nodes));
+        for (const Index n : point.node) is_needed[static_cast<std::size_t>(n)] = true;
     }
     const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corners[k])]; };
     std::array<GradientTerm, 4> terms{};  // gradients of the barycentric coordinates at rest [1/m]
@@ -186,7 +186,7 @@ void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes, std::span<c
     }
     visual.gradient.offset.push_back(0);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        if (wanted[n])
+        if (is_needed[n])
             for (const GradientTerm& term : terms) visual.gradient.item.push_back(term);
         visual.gradient.offset.push_back(static_cast<Index>(visual.gradient.item.size()));
     }
@@ -205,36 +205,37 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
         return visual;
     }
     const RestShape shape(nodes, tetrahedra, boundary);
-    std::vector<bool> wanted(nodes.size(), false);
+    std::vector<bool> is_needed(nodes.size(), false);
     visual.offset.reserve(visual.surface.nodes.size());
     const std::vector<Vec3> normals = normals_of_nodes(visual.surface);
     for (std::size_t i = 0; i < normals.size(); ++i) {
-        const Vec3& place = visual.surface.nodes[i];
-        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, normals[i]));
+        const Vec3& node = visual.surface.nodes[i];
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(node, normals[i]));
         // RestShape::nearest repeats the first node only for points on the boundary. A node inside the body gets the
         // offset zero, not a rounding error.
         const bool is_inside = point.node[3] != point.node[0];
-        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));
+        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(node - position_of(point, nodes)));
         const Real distance = visual.offset.back().norm();
         if (distance == 0) continue;
         ++visual.fit.outside;
         visual.fit.farthest = std::max(visual.fit.farthest, distance);
-        for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
+        for (const Index n : point.node) is_needed[static_cast<std::size_t>(n)] = true;
     }
-    visual.gradient = gradients_of(nodes, tetrahedra, wanted);
+    visual.gradient = gradients_of(nodes, tetrahedra, is_needed);
     visual.fit.warning = warning_of(visual, nodes, mesh::mean_edge(boundary));
     return visual;
 }
 
 VisualPoints split_at_seams(const VisualSurface& surface) {
     VisualPoints points;
-    std::map<std::array<Index, 2>, Index> known;  // index of the point for each pair (node, texture point)
+    std::map<std::array<Index, 2>, Index> point_of_corner;  // index of the point for each pair (node, texture point)
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         std::array<Index, 3>& corners = points.triangles.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
             const Index node = surface.triangles[t][k];
             const Index texture = surface.texture_corners.empty() ? no_index : surface.texture_corners[t][k];
-            const auto [place, is_new] = known.try_emplace({node, texture}, static_cast<Index>(points.node.size()));
+            const auto [place, is_new] =
+                point_of_corner.try_emplace({node, texture}, static_cast<Index>(points.node.size()));
             corners[k] = place->second;
             if (!is_new) continue;
             points.node.push_back(node);

@@ -273,13 +273,13 @@ void UsdFilm::put_presence(const Object& object, CrateSpec& mesh) {
     constexpr double before = 1e-3;  // USD interpolates sizes: the change takes this long [frame steps]
     std::vector<double> times;
     std::vector<bool> present;
-    const auto change = [&](double time, bool from, bool to) {
+    const auto switch_at = [&](double time, bool shown_before, bool shown_after) {
         times.insert(times.end(), {time - before, time});
-        present.insert(present.end(), {from, to});
+        present.insert(present.end(), {shown_before, shown_after});
     };
     const std::size_t end = object.first + object.frames;
-    if (object.first > 0) change(times_[object.first], false, true);
-    if (end < times_.size()) change(times_[end], true, false);
+    if (object.first > 0) switch_at(times_[object.first], false, true);
+    if (end < times_.size()) switch_at(times_[end], true, false);
     std::vector<std::string> operations{"xformOp:translate", "xformOp:orient"};
     if (!times.empty()) {
         std::vector<CrateValue> visibility, scale;
@@ -331,9 +331,9 @@ CrateSpec UsdFilm::unset(const char* name, const char* type) {
     return {.kind = SpecKind::attribute, .name = name, .fields = {{"typeName", file_.token(type)}}};
 }
 
-CrateSpec UsdFilm::connected(const char* name, const char* type, const std::string& to) {
+CrateSpec UsdFilm::connected(const char* name, const char* type, const std::string& source) {
     CrateSpec spec = unset(name, type);
-    spec.fields.emplace_back("connectionPaths", file_.target(to));
+    spec.fields.emplace_back("connectionPaths", file_.target(source));
     return spec;
 }
 
@@ -383,8 +383,8 @@ std::string UsdFilm::material_path(const VisualMaterial& material) {
     reader.children.push_back(attribute("inputs:varname", "string", file_.string("st")));
     reader.children.push_back(unset("outputs:result", "float2"));
     CrateSpec texture = shader("texture", "UsdUVTexture");
-    const std::filesystem::path place = std::filesystem::proximate(material.texture, folder_);
-    texture.children.push_back(attribute("inputs:file", "asset", file_.asset_path(place.generic_string())));
+    const std::filesystem::path texture_path = std::filesystem::proximate(material.texture, folder_);
+    texture.children.push_back(attribute("inputs:file", "asset", file_.asset_path(texture_path.generic_string())));
     texture.children.push_back(attribute("inputs:wrapS", "token", file_.token("repeat")));
     texture.children.push_back(attribute("inputs:wrapT", "token", file_.token("repeat")));
     texture.children.push_back(connected("inputs:st", "float2", path + "/st.outputs:result"));

@@ -71,7 +71,7 @@ private:
     void put_materials(Object& object, const VisualSurface& surface);
     void bind(CrateSpec& spec, const std::string& path);
     CrateSpec unset(const char* name, const char* type);
-    CrateSpec connected(const char* name, const char* type, const std::string& to);
+    CrateSpec connected(const char* name, const char* type, const std::string& source);
     CrateSpec shader(std::string name, const char* kind);
     void add_material(const std::string& path, CrateSpec diffuse, Real opacity, std::vector<CrateSpec> inputs);
     void add_vertex_color();

@@ -170,9 +170,9 @@ void put_page(std::ostream& out, const PageParts& parts) {
     // Replaces the @marks@ of the template in one pass, so that marks inside an inserted text stay unchanged.
     std::string_view rest = page_html;
     const auto replace = [&](std::string_view mark, std::string_view text) {
-        const std::size_t place = rest.find(mark);
-        out << rest.substr(0, place) << text;
-        rest.remove_prefix(place + mark.size());
+        const std::size_t position = rest.find(mark);
+        out << rest.substr(0, position) << text;
+        rest.remove_prefix(position + mark.size());
     };
     replace("@title@", escape_html(parts.title));
     replace("@style@", page_style);

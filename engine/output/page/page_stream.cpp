@@ -108,8 +108,8 @@ void PageStream::pack_body(const BodyFrame& body, const BodyValues& values) {
 
 void PageStream::pack_contacts(const Frame& frame) {
     const auto number_in = [](const auto& numbers, auto handle) {
-        const auto place = numbers.find(handle);
-        return place == numbers.end() ? no_index : place->second;
+        const auto found = numbers.find(handle);
+        return found == numbers.end() ? no_index : found->second;
     };
     sides_.clear();
     for (const Contact& contact : frame.contacts)

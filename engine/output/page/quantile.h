@@ -20,13 +20,13 @@ public:
         ++count_;
         if (value > max_) max_ = value;
     }
-    /// Returns the value below which the fraction `share` of the positive values lies, accurate to 2 %. Returns 0 if
+    /// Returns the value below which this fraction of the positive values lies, accurate to 2 %. Returns 0 if
     /// there are no values.
-    Real at(Real share) const {
+    Real at(Real fraction) const {
         std::uint64_t below = 0;
         for (const auto& [bin, count] : bins_) {
             below += count;
-            if (static_cast<Real>(below) >= share * static_cast<Real>(count_))
+            if (static_cast<Real>(below) >= fraction * static_cast<Real>(count_))
                 return std::fmin(std::exp((bin + 1) * log_width), max_);
         }
         return max_;

@@ -120,13 +120,13 @@ void require_weights(const PointProbe& point) {
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
     // The mean force is known only if some call of advance since the last row was long enough to measure it.
-    const bool known = force.seconds > 0 && force.measured;
+    const bool is_measured = force.seconds > 0 && force.measured;
     const Real none = std::numeric_limits<Real>::quiet_NaN();
-    const Real per = known ? 1 / force.seconds : none;
-    put_vector(known ? force.impulse : Vec3::Constant(none), values);
+    const Real per = is_measured ? 1 / force.seconds : none;
+    put_vector(is_measured ? force.impulse : Vec3::Constant(none), values);
     put_vector(per * force.impulse, values);
     put_vector(per * force.moment, values);
-    values.push_back(known ? force.largest : none);
+    values.push_back(is_measured ? force.largest : none);
     if (of_contacts) {
         values.push_back(per * force.pressing);
         put_vector(per * force.friction, values);
@@ -180,7 +180,7 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
                 put_vector(now.force, values);
                 put_vector(now.moment, values);
                 const auto broken =
-                    std::ranges::count_if(now.nodes, [](const TiedNode& of) { return bool(of.broken); });
+                    std::ranges::count_if(now.nodes, [](const TiedNode& node) { return bool(node.broken); });
                 values.insert(values.end(), {now.error, static_cast<Real>(broken)});
             },
             [&](const CavityProbe& cavity) {
@@ -297,7 +297,9 @@ std::vector<TrackedProbe> track(World& world, std::vector<RecordedProbe> probes)
 }
 
 void add_columns(const World& world, const RecordedProbe& probe, std::vector<SeriesColumn>& columns) {
-    const auto one = [&](const char* quantity, const char* unit) { columns.push_back({probe.name, quantity, unit}); };
+    const auto add_column = [&](const char* quantity, const char* unit) {
+        columns.push_back({probe.name, quantity, unit});
+    };
     const auto three = [&](const std::string& quantity, const char* unit) {
         for (const char* axis : {"_x", "_y", "_z"}) columns.push_back({probe.name, quantity + axis, unit});
     };
@@ -310,78 +312,79 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
         three("impulse", "N s");
         three("force", "N");
         three("moment", "N m");
-        one("largest_force", "N");
+        add_column("largest_force", "N");
     };
     const auto contact_force = [&] {
         force();
-        one("pressing_force", "N");
+        add_column("pressing_force", "N");
         three("friction_force", "N");
-        one("contacts", "1");
+        add_column("contacts", "1");
     };
     const auto of_joint = [&](JointKind kind) {
         three("force", "N");
         three("moment", "N m");
         if (!has_coordinate(kind)) return;
         const bool turns = kind == JointKind::hinge;
-        one(turns ? "angle" : "displacement", turns ? "rad" : "m");
-        one("speed", turns ? "rad/s" : "m/s");
-        one(turns ? "motor_moment" : "motor_force", turns ? "N m" : "N");
-        one(turns ? "passive_moment" : "passive_force", turns ? "N m" : "N");
-        one(turns ? "limit_moment" : "limit_force", turns ? "N m" : "N");
+        add_column(turns ? "angle" : "displacement", turns ? "rad" : "m");
+        add_column("speed", turns ? "rad/s" : "m/s");
+        add_column(turns ? "motor_moment" : "motor_force", turns ? "N m" : "N");
+        add_column(turns ? "passive_moment" : "passive_force", turns ? "N m" : "N");
+        add_column(turns ? "limit_moment" : "limit_force", turns ? "N m" : "N");
     };
     const auto of_cable = [&](std::size_t segments) {
-        for (std::size_t s = 0; s < segments; ++s) one(("tension_" + std::to_string(s)).c_str(), "N");
-        one("length", "m");
-        one("rate", "m/s");
-        one("work", "J");
-        one("dissipated", "J");
+        for (std::size_t s = 0; s < segments; ++s) add_column(("tension_" + std::to_string(s)).c_str(), "N");
+        add_column("length", "m");
+        add_column("rate", "m/s");
+        add_column("work", "J");
+        add_column("dissipated", "J");
     };
-    std::visit(Overloaded{[&](const PointProbe&) { motion(); }, [&](const BodyProbe&) { motion(); },
-                          [&](const BodyForceProbe&) { contact_force(); },
-                          [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
-                          [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
-                          [&](const CableProbe& cable) { of_cable(state_of(world, cable).tension.size()); },
-                          [&](const TieProbe&) {
-                              three("force", "N");
-                              three("moment", "N m");
-                              one("error", "m");
-                              one("broken", "1");
-                          },
-                          [&](const CavityProbe&) {
-                              one("pressure", "Pa");
-                              one("volume", "m^3");
-                              one("mass", "kg");
-                              one("energy", "J");
-                              three("force", "N");
-                          },
-                          [&](const SpringProbe&) {
-                              one("length", "m");
-                              one("rate", "m/s");
-                              one("force", "N");
-                              one("energy", "J");
-                          },
-                          [&](const EnergyProbe&) {
-                              for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
-                          },
-                          [&](const StressProbe&) {
-                              for (const char* which : {"largest_von_mises", "largest_principal", "smallest_principal"})
-                                  one(which, "Pa");
-                          },
-                          [&](const VolumeProbe&) { one("smallest_volume_ratio", "1"); },
-                          [&](const PoseProbe&) {
-                              three("position", "m");
-                              three("rotation", "rad");
-                          },
-                          [&](const VelocityProbe&) {
-                              three("velocity", "m/s");
-                              three("angular_velocity", "rad/s");
-                          },
-                          [&](const NodesProbe& nodes) {
-                              for (std::size_t n = 0; n < world.positions(nodes.body).size(); ++n)
-                                  for (const char* axis : {"position_x_", "position_y_", "position_z_"})
-                                      columns.push_back({probe.name, axis + std::to_string(n), "m"});
-                          }},
-               probe.what);
+    std::visit(
+        Overloaded{[&](const PointProbe&) { motion(); }, [&](const BodyProbe&) { motion(); },
+                   [&](const BodyForceProbe&) { contact_force(); }, [&](const ColliderForceProbe&) { contact_force(); },
+                   [&](const ReactionProbe&) { force(); },
+                   [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
+                   [&](const CableProbe& cable) { of_cable(state_of(world, cable).tension.size()); },
+                   [&](const TieProbe&) {
+                       three("force", "N");
+                       three("moment", "N m");
+                       add_column("error", "m");
+                       add_column("broken", "1");
+                   },
+                   [&](const CavityProbe&) {
+                       add_column("pressure", "Pa");
+                       add_column("volume", "m^3");
+                       add_column("mass", "kg");
+                       add_column("energy", "J");
+                       three("force", "N");
+                   },
+                   [&](const SpringProbe&) {
+                       add_column("length", "m");
+                       add_column("rate", "m/s");
+                       add_column("force", "N");
+                       add_column("energy", "J");
+                   },
+                   [&](const EnergyProbe&) {
+                       for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) add_column(part, "J");
+                   },
+                   [&](const StressProbe&) {
+                       for (const char* axis_suffix : {"largest_von_mises", "largest_principal", "smallest_principal"})
+                           add_column(axis_suffix, "Pa");
+                   },
+                   [&](const VolumeProbe&) { add_column("smallest_volume_ratio", "1"); },
+                   [&](const PoseProbe&) {
+                       three("position", "m");
+                       three("rotation", "rad");
+                   },
+                   [&](const VelocityProbe&) {
+                       three("velocity", "m/s");
+                       three("angular_velocity", "rad/s");
+                   },
+                   [&](const NodesProbe& nodes) {
+                       for (std::size_t n = 0; n < world.positions(nodes.body).size(); ++n)
+                           for (const char* axis : {"position_x_", "position_y_", "position_z_"})
+                               columns.push_back({probe.name, axis + std::to_string(n), "m"});
+                   }},
+        probe.what);
 }
 
 void add_forces(const World& world, TrackedProbe& probe) {

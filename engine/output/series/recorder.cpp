@@ -59,15 +59,15 @@ std::string rows_to_keep(const std::filesystem::path& file, const std::string& h
                   "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
                   "the column headings of the recorded probes",
                   "a continued run appends its rows to the file; choose another file or delete this one");
-    std::string kept;
+    std::string rows;
     for (std::size_t begin = head.size(), end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
         const std::string line = text.substr(begin, end + 1 - begin);
         char* number_end = nullptr;
         const Real time = std::strtod(line.c_str(), &number_end);
         if (number_end == line.c_str() || !(time <= until * (1 + slack))) break;
-        kept += line;
+        rows += line;
     }
-    return kept;
+    return rows;
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ struct Recorder::Impl {
     std::span<const Real> row(std::size_t number) const {
         return std::span<const Real>(values).subspan(number * columns.size(), columns.size());
     }
-    void put(const std::string& text) {
+    void append_row_text(const std::string& text) {
         errno = 0;
         stream << text << std::flush;
         stream_size += text.size();
@@ -154,7 +154,7 @@ void Recorder::sample(const World& world) {
         r.values.resize(before);  // removes the values of a row that could not be completed
         throw;
     }
-    if (r.stream.is_open()) r.put(csv_row(r.row(r.rows() - 1)));
+    if (r.stream.is_open()) r.append_row_text(csv_row(r.row(r.rows() - 1)));
 }
 
 const std::vector<SeriesColumn>& Recorder::columns() const {
@@ -170,9 +170,9 @@ std::span<const Real> Recorder::row(std::size_t number) const {
 void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real> keep_until) {
     Impl& r = *impl_;
     const std::string head = csv_head(r.columns);
-    const std::string kept = keep_until ? rows_to_keep(file, head, *keep_until) : std::string();
+    const std::string kept_rows = keep_until ? rows_to_keep(file, head, *keep_until) : std::string();
     write_file(file, [&](std::ostream& out) {
-        out << head << kept;
+        out << head << kept_rows;
         for (std::size_t i = 0; i < r.rows(); ++i) out << csv_row(r.row(i));
     });
     r.stream_file = file;
@@ -180,7 +180,7 @@ void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real>
     r.stream = std::ofstream(file, std::ios::binary | std::ios::app);
     std::error_code ignored;  // the size of a pipe is unknown, so file_size fails
     r.stream_size = std::filesystem::file_size(file, ignored);
-    if (!r.stream) r.put("");
+    if (!r.stream) r.append_row_text("");
 }
 
 void Recorder::write_csv(const std::filesystem::path& file) const {

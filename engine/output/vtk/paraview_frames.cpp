@@ -18,9 +18,9 @@ public:
         : folder_(folder), name_(scene.name), materials_(scene.materials) {}
 
     bool may_write(const std::filesystem::path& file) const override {
-        const std::filesystem::path place = canonical(file);
-        return place.parent_path() == canonical(folder_ / "frame").parent_path() &&
-               is_series_file(place.filename().string(), name_);
+        const std::filesystem::path path = canonical(file);
+        return path.parent_path() == canonical(folder_ / "frame").parent_path() &&
+               is_series_file(path.filename().string(), name_);
     }
     void open(World& world, const RunStart& start) override {
         writer_ = std::make_unique<VtkWriter>(folder_, name_);
@@ -41,9 +41,9 @@ public:
     }
 
 private:
-    static std::filesystem::path canonical(const std::filesystem::path& place) {
+    static std::filesystem::path canonical(const std::filesystem::path& path) {
         std::error_code ignored;
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(place), ignored);
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path), ignored);
     }
     /// Writes the index, so that the frames written so far can be opened. Does nothing if the index cannot be written.
     void write_index_if_possible() {

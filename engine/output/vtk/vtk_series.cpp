@@ -64,10 +64,10 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
                           [](const auto& file) { return file.extension() == ".pvd"; });
 }
 
-std::string VtkSeries::frame_file(const char* what, const char* extension) const {
+std::string VtkSeries::frame_file(const char* part, const char* extension) const {
     std::string digits = std::to_string(frame_count_);
     if (digits.size() < least_digits) digits.insert(0, least_digits - digits.size(), '0');
-    return name_ + "_" + what + "_" + digits + extension;
+    return name_ + "_" + part + "_" + digits + extension;
 }
 
 void VtkSeries::number(const Frame& frame) {
@@ -113,12 +113,12 @@ void VtkSeries::read_origins(const Frame& now) {
     if (found == std::string::npos || first + points * sizeof(Vec3) > file.size()) return;
     std::memcpy(&bytes, file.data() + found + start.size(), sizeof bytes);
     if (bytes != points * sizeof(Vec3)) return;
-    const char* place = file.data() + first;
+    const char* number_text = file.data() + first;
     for (const BodyFrame& body : now.bodies) {
         std::vector<Vec3>& origin = origin_[body.handle];
         origin.resize(body.position.size());
-        std::memcpy(static_cast<void*>(origin.data()), place, origin.size() * sizeof(Vec3));
-        place += origin.size() * sizeof(Vec3);
+        std::memcpy(static_cast<void*>(origin.data()), number_text, origin.size() * sizeof(Vec3));
+        number_text += origin.size() * sizeof(Vec3);
     }
 }
 
@@ -333,11 +333,11 @@ void VtkSeries::write_contacts(const Frame& frame, const std::string& name) cons
 }
 
 bool VtkSeries::colliders_changed(const Frame& frame) {
-    const auto same = [](const auto& prev, const ColliderFrame& now) {
+    const auto is_unchanged = [](const auto& prev, const ColliderFrame& now) {
         return prev.first == now.handle && prev.second.position == now.pose.position &&
                prev.second.rotation == now.pose.rotation;
     };
-    if (std::ranges::equal(colliders_prev_, frame.colliders, same)) return false;
+    if (std::ranges::equal(colliders_prev_, frame.colliders, is_unchanged)) return false;
     colliders_prev_.clear();
     for (const ColliderFrame& collider : frame.colliders) colliders_prev_.emplace_back(collider.handle, collider.pose);
     return true;

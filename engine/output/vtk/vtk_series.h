@@ -50,7 +50,7 @@ private:
     void write_colliders(const Frame& frame, const std::string& file) const;
     void write_lines(const Frame& frame, const std::string& file) const;
     bool colliders_changed(const Frame& frame);
-    std::string frame_file(const char* what, const char* extension) const;
+    std::string frame_file(const char* part, const char* extension) const;
 
     // Files of an earlier series with the same name, the index file first.
     std::vector<std::filesystem::path> earlier_;

@@ -200,7 +200,7 @@ World& RunRanks::divide(Scene& scene, OwnerMap owners) {
     return *part_;
 }
 
-World* RunRanks::whole() {
+World* RunRanks::gathered_world() {
     if (several() && !is_gathered_) {
         { const World old = std::move(scene_->world); }  // frees the memory of the last gathered world
         std::optional<World> world = gathered(*part_);

@@ -67,12 +67,12 @@ public:
     /// other than 0 print no messages. Throws SceneError for outputs that several ranks cannot write.
     RunOptions options_for(const RunOptions& asked) const;
     /// Divides the world of the scene of rank 0 among the ranks, and returns the part of this rank. Throws SceneError
-    /// if the world holds something that cannot be divided. Afterwards `scene.world` must not be used; whole() fills it
-    /// on rank 0. A single process keeps the world in `scene`.
+    /// if the world holds something that cannot be divided. Afterwards `scene.world` must not be used; gathered_world()
+    /// fills it on rank 0. A single process keeps the world in `scene`.
     World& divide(Scene& scene, OwnerMap owners);
     /// Collective. Returns the whole world on rank 0, null on the other ranks. The first call gathers the world; a
     /// later call does so only if before_advance() was called since the previous call.
-    World* whole();
+    World* gathered_world();
     /// Must be called before and after each World::advance of the part of this rank. They measure the communication of
     /// the steps.
     void before_advance();

@@ -18,21 +18,21 @@ constexpr double longest_interval = 600;  // longest time between two lines [s]
 
 }  // namespace
 
-CaseProgress::CaseProgress(bool wanted, const char* kind)
-    : wanted_(wanted), bar_(wanted && isatty(STDERR_FILENO) != 0), kind_(kind), next_(bar_ ? 0 : first_line_after) {}
+CaseProgress::CaseProgress(bool visible, const char* kind)
+    : visible_(visible), bar_(visible && isatty(STDERR_FILENO) != 0), kind_(kind), next_(bar_ ? 0 : first_line_after) {}
 
 CaseProgress::~CaseProgress() {
     if (bar_) clear_bar();
 }
 
-void CaseProgress::show(int done, int running, int count, double share) {
+void CaseProgress::show(int done, int running, int count, double fraction) {
     const double wall = watch_.seconds();
-    if (!wanted_ || wall < next_) return;
+    if (!visible_ || wall < next_) return;
     std::string text = std::to_string(done) + " of " + std::to_string(count) + " " + kind_ + " done, " +
                        std::to_string(running) + " running";
-    if (share > 0) text += ", about " + duration_text(wall * (1 - share) / share) + " left";
+    if (fraction > 0) text += ", about " + duration_text(wall * (1 - fraction) / fraction) + " left";
     if (bar_)
-        std::fprintf(stderr, "\r\033[K%s %s", bar_text(share).c_str(), text.c_str());
+        std::fprintf(stderr, "\r\033[K%s %s", bar_text(fraction).c_str(), text.c_str());
     else
         std::fprintf(stderr, "skerry: after %s: %s\n", duration_text(wall).c_str(), text.c_str());
     std::fflush(stderr);

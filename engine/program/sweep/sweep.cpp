@@ -36,39 +36,39 @@ int cores_here() {
 }
 
 std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
-    std::vector<int> mine;
+    std::vector<int> own_cases;
     for (int i = 0; i < plan.cases.count(); ++i)
-        if (share.has(i)) mine.push_back(i);
-    return mine;
+        if (share.has(i)) own_cases.push_back(i);
+    return own_cases;
 }
 
-/// Returns the cases of `mine` that have no result yet. If the file of a case holds anything but the result of this
-/// case, throws SceneError unless `redo` is set.
-std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
-    std::vector<int> left;
-    int others = 0;
+/// Returns the cases of `own_cases` that have no result yet. If the file of a case holds anything but the result of
+/// this case, throws SceneError unless `redo` is set.
+std::vector<int> unfinished_cases(const SweepPlan& plan, const std::vector<int>& own_cases, bool redo) {
+    std::vector<int> unfinished;
+    int of_other_cases = 0;
     std::string first;  // description of the first file in the state `other`
-    for (const int index : mine) {
+    for (const int index : own_cases) {
         const CaseFile file = plan.read(index);
-        if (file.state == CaseFileState::other && others++ == 0)
+        if (file.state == CaseFileState::other && of_other_cases++ == 0)
             first = case_file({}, index).string() + " is " + file.found;
-        if (file.state != CaseFileState::whole) left.push_back(index);
+        if (file.state != CaseFileState::whole) unfinished.push_back(index);
     }
-    if (others == 0) return left;
+    if (of_other_cases == 0) return unfinished;
     if (!redo)
         refuse_in(plan.folder.string(), "output", {},
-                  std::to_string(others) + (others == 1 ? " file that does" : " files that do") +
+                  std::to_string(of_other_cases) + (of_other_cases == 1 ? " file that does" : " files that do") +
                       " not belong to these cases; " + first,
                   "results of the cases of " + plan.file.place.file().string() + " in its present version",
                   "add --redo to compute these cases again, or choose another folder with --out");
-    std::cerr << "skerry: " << others << " cases are computed again, because their files hold other results"
+    std::cerr << "skerry: " << of_other_cases << " cases are computed again, because their files hold other results"
               << std::endl;
-    return left;
+    return unfinished;
 }
 
-void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
+void print_cases(const SweepPlan& plan, const std::vector<int>& own_cases) {
     int done = 0;
-    for (const int index : mine) {
+    for (const int index : own_cases) {
         const CaseFileState state = plan.read(index).state;
         done += state == CaseFileState::whole ? 1 : 0;
         std::cout << "case " << index << ": " << case_text(plan.cases, index)
@@ -77,7 +77,7 @@ void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
                                                       : "")
                   << "\n";
     }
-    std::cout << mine.size() << " of " << plan.cases.count() << " cases are for this process, " << done
+    std::cout << own_cases.size() << " of " << plan.cases.count() << " cases are for this process, " << done
               << " of these have a result; folder of the results: " << plan.folder.string() << std::endl;
 }
 
@@ -130,12 +130,12 @@ struct SweepRun {
     bool output_failed = false;
 };
 
-SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs, const SweepOptions& options) {
+SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& unfinished, int jobs, const SweepOptions& options) {
     SweepRun run;
-    const auto count = static_cast<int>(left.size());
+    const auto count = static_cast<int>(unfinished.size());
     CaseProgress progress(!options.quiet && count > 0, "cases");
-    const auto index_of = [&](int job) { return left[static_cast<std::size_t>(job)]; };
-    const auto one = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
+    const auto index_of = [&](int job) { return unfinished[static_cast<std::size_t>(job)]; };
+    const auto run_job = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
     const auto goes_on = [&](int, int code) {
         // After an output error (such as a full disk) no more cases start, because their results could not be written
         // either.
@@ -145,59 +145,60 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     const auto show = [&](int done, int running) {
         progress.show(done, running, count, static_cast<double>(done) / count);
     };
-    run.end = run_in_processes(count, jobs, {one, goes_on, show});
-    for (const auto& [job, how] : run.end.lost) remove_unfinished(plan, index_of(job));
+    run.end = run_in_processes(count, jobs, {run_job, goes_on, show});
+    for (const auto& [job, cause] : run.end.lost) remove_unfinished(plan, index_of(job));
     for (const int job : run.end.stopped) remove_unfinished(plan, index_of(job));
     clear_bar();
-    for (const auto& [job, how] : run.end.lost)
-        std::cerr << "skerry: case " << index_of(job) << " (" << case_text(plan.cases, index_of(job)) << ") " << how
+    for (const auto& [job, cause] : run.end.lost)
+        std::cerr << "skerry: case " << index_of(job) << " (" << case_text(plan.cases, index_of(job)) << ") " << cause
                   << ": the case has no result; run the sweep again" << std::endl;
     return run;
 }
 
-/// True if no case of `mine` that has a result failed, was refused or has warnings.
-bool all_good(const SweepPlan& plan, const std::vector<int>& mine) {
-    return std::ranges::all_of(mine, [&](int index) {
+/// True if no case of `own_cases` that has a result failed, was refused or has warnings.
+bool all_good(const SweepPlan& plan, const std::vector<int>& own_cases) {
+    return std::ranges::all_of(own_cases, [&](int index) {
         const CaseFile file = plan.read(index);
         return file.state != CaseFileState::whole ||
                (file.result.status == CaseStatus::ok && file.result.warnings.empty());
     });
 }
 
-bool is_there(const SweepPlan& plan, int index) {
+bool has_file(const SweepPlan& plan, int index) {
     std::error_code error;
     return std::filesystem::exists(case_file(plan.folder, index), error);
 }
 
 /// True if every case has a file. The files are not read, so that this check is fast for each of many processes.
-bool all_there(const SweepPlan& plan) {
+bool all_have_files(const SweepPlan& plan) {
     for (int i = 0; i < plan.cases.count(); ++i)
-        if (!is_there(plan, i)) return false;
+        if (!has_file(plan, i)) return false;
     return true;
 }
 
 /// Writes the table if all cases have a result or --table is given. Otherwise prints how to continue the sweep.
-void conclude(const SweepPlan& plan, const std::vector<int>& mine, const SweepOptions& options) {
-    if (options.table || all_there(plan)) {
+void conclude(const SweepPlan& plan, const std::vector<int>& own_cases, const SweepOptions& options) {
+    if (options.table || all_have_files(plan)) {
         const SweepTable table = collect(plan);
         if (options.table || count_missing(table) == 0) return write_tables(plan, table, options.quiet);
     }
     if (options.quiet) return;
     // Counts files instead of successful jobs, because a job may have written its result before a signal stopped it.
-    const auto there = std::ranges::count_if(mine, [&](int index) { return is_there(plan, index); });
-    const bool all = there == static_cast<std::ptrdiff_t>(mine.size());
-    std::cout << there << " of " << mine.size() << " cases of this process have a result in " << plan.folder.string()
-              << ". " << (all ? "" : "Run the same command again for the other cases. ")
+    const auto finished = std::ranges::count_if(own_cases, [&](int index) { return has_file(plan, index); });
+    const bool all_finished = finished == static_cast<std::ptrdiff_t>(own_cases.size());
+    std::cout << finished << " of " << own_cases.size() << " cases of this process have a result in "
+              << plan.folder.string() << ". "
+              << (all_finished ? "" : "Run the same command again for the other cases. ")
               << "The table is written when all " << plan.cases.count() << " cases have a result, or with --table."
               << std::endl;
 }
 
-int exit_code_of(const SweepPlan& plan, const std::vector<int>& mine, const SweepRun& run,
+int exit_code_of(const SweepPlan& plan, const std::vector<int>& own_cases, const SweepRun& run,
                  const SweepOptions& options) {
     if (run.end.signal != 0) return exit_signal + run.end.signal;
     if (run.output_failed) return exit_output;
     if (!run.end.lost.empty()) return exit_failed;
-    return options.strict && !all_good(plan, mine) ? exit_failed : exit_ok;
+    return options.strict && !all_good(plan, own_cases) ? exit_failed : exit_ok;
 }
 
 /// Throws SceneError if the folder of results cannot be written, or if results would replace the input files.
@@ -207,8 +208,9 @@ void check_folder(const SweepPlan& plan, const SweepOptions& options) {
     for (const std::filesystem::path& read : {options.cases, plan.file.scene.path}) {
         std::error_code error;
         const std::string name = read.filename().string();
-        const bool taken = name.starts_with("case_") || name == "sweep.csv" || name == "sweep.html";
-        if (taken && std::filesystem::equivalent(std::filesystem::absolute(read).parent_path(), plan.folder, error))
+        const bool is_result_name = name.starts_with("case_") || name == "sweep.csv" || name == "sweep.html";
+        if (is_result_name &&
+            std::filesystem::equivalent(std::filesystem::absolute(read).parent_path(), plan.folder, error))
             refuse_in(read.string(), "--out", {},
                       "an input file that would be overwritten by a result of the same name",
                       "another folder for the results", "choose another --out, or rename the input file");
@@ -220,32 +222,32 @@ void check_folder(const SweepPlan& plan, const SweepOptions& options) {
 int sweep(const SweepOptions& options) {
     const Share share = share_of(options.rank, options.of, [](const char* name) { return std::getenv(name); });
     const SweepPlan plan = plan_sweep(options.cases, options.out);
-    const std::vector<int> mine = cases_of_share(plan, share);
+    const std::vector<int> own_cases = cases_of_share(plan, share);
     if (options.dry_run) {
-        print_cases(plan, mine);
+        print_cases(plan, own_cases);
         return exit_ok;
     }
     check_folder(plan, options);
     SweepRun run;
     if (!options.table) {
-        const std::vector<int> left = cases_left(plan, mine, options.redo);
+        const std::vector<int> unfinished = unfinished_cases(plan, own_cases, options.redo);
         const int jobs = options.jobs.value_or(share.cores.value_or(cores_here()));
         if (!options.quiet) {
             if (!share.said_by.empty())
                 std::cerr << "skerry: process " << share.rank << " of " << share.of << " (" << share.said_by << ")\n";
-            std::cerr << "skerry: " << left.size() << " of " << mine.size() << " cases to run, " << jobs
+            std::cerr << "skerry: " << unfinished.size() << " of " << own_cases.size() << " cases to run, " << jobs
                       << " at a time\n";
         }
         make_folder(plan.folder);
-        run = run_cases(plan, left, jobs, options);
+        run = run_cases(plan, unfinished, jobs, options);
     }
     try {
-        conclude(plan, mine, options);
+        conclude(plan, own_cases, options);
     } catch (const SceneError& error) {  // the results exist; only the table could not be written
         std::cerr << "skerry: " << error.what() << std::endl;
         return exit_output;
     }
-    return exit_code_of(plan, mine, run, options);
+    return exit_code_of(plan, own_cases, run, options);
 }
 
 }  // namespace skerry

@@ -11,12 +11,13 @@ namespace skerry {
 
 namespace {
 
-/// Sets the value at `place` in `json`, the document of a scene. Errors name `of`, the location in the file of cases.
-void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
-               Json& json) {
-    if (place.find('=') != std::string::npos)
-        of.refuse("the place " + in_quotes(place), "a place without \"=\" and a value");
-    called_at(of, [&] { assign(place + "=" + value.dump(), scene, json); });
+/// Sets the value at `key_path` in `json`, the document of a scene. Errors name `location`, the location in the file of
+/// cases.
+void try_assignment(const Place& location, const std::string& key_path, const Json& value,
+                    const std::filesystem::path& scene, Json& json) {
+    if (key_path.find('=') != std::string::npos)
+        location.refuse("the place " + in_quotes(key_path), "a place without \"=\" and a value");
+    called_at(location, [&] { assign(key_path + "=" + value.dump(), scene, json); });
 }
 
 /// Throws SceneError if none of the first hundred cases gives a readable scene. The fault is then probably in the
@@ -43,19 +44,20 @@ void require_a_readable_case(const SweepPlan& plan) {
 /// Throws SceneError if an assignment of the sweep names a place that does not exist in the scene. In a list each case
 /// may set other places, so that every case is tested. In all other sweeps all cases set the same places, and the first
 /// case is enough.
-void require_places(const SweepPlan& plan, const Json& scene) {
+void require_assignable(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;
-    for (const auto& [place, value] : file.set.items)
-        try_place(file.place.key("set"), place, value.json, file.scene.path, fixed);
+    for (const auto& [key_path, value] : file.set.items)
+        try_assignment(file.place.key("set"), key_path, value.json, file.scene.path, fixed);
     for (std::size_t i = 0; i < plan.cases.values.size(); ++i) {
         Json json = fixed;
         for (std::size_t p = 0; p < plan.cases.parameters.size(); ++p) {
             const Parameter& parameter = plan.cases.parameters[p];
             const std::optional<Json>& value = plan.cases.values[i][p];
             if (!value) continue;
-            const Place of = file.list.empty() ? parameter.place.key("set") : file.place.key("list").item(i);
-            for (const std::string& place : parameter.places) try_place(of, place, *value, file.scene.path, json);
+            const Place location = file.list.empty() ? parameter.place.key("set") : file.place.key("list").item(i);
+            for (const std::string& key_path : parameter.places)
+                try_assignment(location, key_path, *value, file.scene.path, json);
         }
         if (file.list.empty()) return;
     }
@@ -93,7 +95,7 @@ SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::p
     plan.cases = cases_of(plan.file);
     if (plan.folder.empty()) plan.folder = folder_of(plan.file);
     CaseHasher hasher(plan.file.scene.path);
-    require_places(plan, hasher.scene());
+    require_assignable(plan, hasher.scene());
     require_a_readable_case(plan);
     for (int i = 0; i < plan.cases.count(); ++i)
         plan.hashes.push_back(hasher.hash(assignments_of(plan.file, plan.cases, i)));

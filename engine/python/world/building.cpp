@@ -14,29 +14,30 @@ WorldObject* object_with(World&& world) {
     return new WorldObject(std::move(world));
 }
 
-BodySettings body_settings(const MaterialHandle& material, nb::handle given) {
+BodySettings body_settings(const MaterialHandle& material, nb::handle settings_object) {
     BodySettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     settings.material = material;
     return settings;
 }
 
 BodyHandle add_body(WorldObject& object, const Mesh& mesh, const MaterialHandle& material,
                     const std::map<int, MaterialHandle>& materials,
-                    const std::map<std::string, MaterialHandle>& materials_of_sets, nb::handle given) {
+                    const std::map<std::string, MaterialHandle>& materials_of_sets, nb::handle settings_object) {
     Use use(object);
     require_no_views(object, "add_body");
-    BodySettings settings = body_settings(material, given);
+    BodySettings settings = body_settings(material, settings_object);
     settings.materials = materials;
     settings.materials_of_sets = materials_of_sets;
     return without_gil([&] { return object.world.add_body(mesh, settings); });
 }
 
 /// Adds a rigid body: a sphere, a capsule, a cylinder or the inside of a closed surface.
-BodyHandle add_rigid_body(WorldObject& object, nb::handle shape, const MaterialHandle& material, nb::handle given) {
+BodyHandle add_rigid_body(WorldObject& object, nb::handle shape, const MaterialHandle& material,
+                          nb::handle settings_object) {
     Use use(object);
     require_no_views(object, "add_body");
-    const BodySettings settings = body_settings(material, given);
+    const BodySettings settings = body_settings(material, settings_object);
     return std::visit(
         [&]<class Given>(const Given& body) -> BodyHandle {
             if constexpr (std::is_same_v<Given, Sphere> || std::is_same_v<Given, Capsule> ||
@@ -48,11 +49,11 @@ BodyHandle add_rigid_body(WorldObject& object, nb::handle shape, const MaterialH
         read_shape(shape));
 }
 
-ColliderHandle add_collider(WorldObject& object, nb::handle shape, nb::handle given) {
+ColliderHandle add_collider(WorldObject& object, nb::handle shape, nb::handle settings_object) {
     Use use(object);
     require_no_views(object, "add_collider");
     ColliderSettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     return object.world.add_collider(read_shape(shape), settings);
 }
 
@@ -60,9 +61,9 @@ AttachmentHandle attach(WorldObject& object, const BodyHandle& body, const Indic
                         const Vec3& pivot, const std::vector<Vec3>& directions) {
     Use use(object);
     require_no_views(object, "attach");
-    Motion given;
-    read(motion, given);
-    return object.world.attach(body, span_of(nodes), given, pivot, directions);
+    Motion motion_settings;
+    read(motion, motion_settings);
+    return object.world.attach(body, span_of(nodes), motion_settings, pivot, directions);
 }
 
 template <class HandleType>
@@ -72,9 +73,9 @@ void remove(WorldObject& object, const HandleType& handle) {
     object.world.remove(handle);
 }
 
-LoadSettings load_settings(nb::handle given) {
+LoadSettings load_settings(nb::handle settings_object) {
     LoadSettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     return settings;
 }
 
@@ -82,16 +83,16 @@ LoadSettings load_settings(nb::handle given) {
 
 void bind_building(WorldClass& type) {
     type.def("__init__",
-             [](WorldObject* self, nb::handle given) {
+             [](WorldObject* self, nb::handle settings_object) {
                  Use::require_threads();
                  Settings settings;
-                 read(given, settings);
+                 read(settings_object, settings);
                  new (self) WorldObject(World(settings));
              })
         .def("clone",
-             [](WorldObject& object, nb::handle given) {
+             [](WorldObject& object, nb::handle settings_object) {
                  Use use(object);
-                 const LoadSettings settings = load_settings(given);
+                 const LoadSettings settings = load_settings(settings_object);
                  return object_with(without_gil([&] { return object.world.clone(settings); }));
              })
         .def("to_bytes",
@@ -101,9 +102,9 @@ void bind_building(WorldClass& type) {
                  return nb::bytes(bytes.data(), bytes.size());
              })
         .def_static("from_bytes",
-                    [](const nb::bytes& bytes, nb::handle given) {
+                    [](const nb::bytes& bytes, nb::handle settings_object) {
                         Use::require_threads();
-                        const LoadSettings settings = load_settings(given);
+                        const LoadSettings settings = load_settings(settings_object);
                         const std::span<const std::byte> data(static_cast<const std::byte*>(bytes.data()),
                                                               bytes.size());
                         return object_with(without_gil([&] { return World::from_bytes(data, settings); }));
@@ -114,16 +115,16 @@ void bind_building(WorldClass& type) {
                  without_gil([&] { object.world.save(file); });
              })
         .def_static("load",
-                    [](const std::string& file, nb::handle given) {
+                    [](const std::string& file, nb::handle settings_object) {
                         Use::require_threads();
-                        const LoadSettings settings = load_settings(given);
+                        const LoadSettings settings = load_settings(settings_object);
                         return object_with(without_gil([&] { return World::load(file, settings); }));
                     })
         .def("add_material",
-             [](WorldObject& object, nb::handle given) {
+             [](WorldObject& object, nb::handle settings_object) {
                  Use use(object);
                  MaterialSettings settings;
-                 read(given, settings);
+                 read(settings_object, settings);
                  return object.world.add_material(settings);
              })
         .def("add_body", &add_body)

@@ -7,9 +7,9 @@ namespace skerry::python {
 namespace {
 
 template <class Struct>
-Struct settings_of(nb::handle given) {
+Struct settings_of(nb::handle settings_object) {
     Struct settings;
-    read(given, settings);
+    read(settings_object, settings);
     return settings;
 }
 
@@ -99,8 +99,8 @@ void bind_control(WorldClass& type) {
         .def("reset_to", &reset_to)
         .def("material",
              guarded([](World& world, const MaterialHandle& material) { return values_of(world.material(material)); }))
-        .def("set_material", guarded([](World& world, const MaterialHandle& material, nb::handle given) {
-                 world.set_material(material, settings_of<MaterialSettings>(given));
+        .def("set_material", guarded([](World& world, const MaterialHandle& material, nb::handle settings_object) {
+                 world.set_material(material, settings_of<MaterialSettings>(settings_object));
              }));
 }
 

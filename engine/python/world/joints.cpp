@@ -9,10 +9,10 @@ namespace skerry::python {
 namespace {
 
 JointHandle add_joint(WorldObject& object, const BodyHandle& first, std::optional<BodyHandle> second,
-                      nb::handle given) {
+                      nb::handle settings_object) {
     Use use(object);
     JointSettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     settings.first = first;
     settings.second = second;
     return Joints(object.world).add(settings);
@@ -61,17 +61,17 @@ nb::tuple limits_of(World& world, const JointHandle& joint) {
     return nb::make_tuple(limits.lower, limits.upper);
 }
 
-void set_passive(WorldObject& object, const JointHandle& joint, nb::handle given) {
+void set_passive(WorldObject& object, const JointHandle& joint, nb::handle settings_object) {
     Use use(object);
     JointPassive passive;
-    read(given, passive);
+    read(settings_object, passive);
     Joints(object.world).set_passive(joint, passive);
 }
 
-void set_motor(WorldObject& object, const JointHandle& joint, nb::handle given) {
+void set_motor(WorldObject& object, const JointHandle& joint, nb::handle settings_object) {
     Use use(object);
     std::optional<JointMotor> motor;
-    if (!given.is_none()) read(given, motor.emplace());
+    if (!settings_object.is_none()) read(settings_object, motor.emplace());
     Joints(object.world).set_motor(joint, motor);
 }
 

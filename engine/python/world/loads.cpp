@@ -11,13 +11,13 @@ namespace {
 using Pairs = std::vector<std::array<Real, 2>>;
 
 std::vector<Index> nodes_in(const Indices& nodes) {
-    const std::span<const Index> given = span_of(nodes);
-    return {given.begin(), given.end()};
+    const std::span<const Index> indices = span_of(nodes);
+    return {indices.begin(), indices.end()};
 }
 
 std::vector<std::array<Index, 3>> faces_in(const IndexRows<3>& faces) {
-    const std::span<const std::array<Index, 3>> given = span_of(faces);
-    return {given.begin(), given.end()};
+    const std::span<const std::array<Index, 3>> indices = span_of(faces);
+    return {indices.begin(), indices.end()};
 }
 
 nb::dict values_of(const LoadState& state) {

@@ -17,10 +17,10 @@ nb::object handle_of(const auto& handle) {
     return handle ? object_of(*handle) : nb::none();
 }
 
-SpringHandle add_spring(WorldObject& object, const Anchor& first, const Anchor& second, nb::handle given) {
+SpringHandle add_spring(WorldObject& object, const Anchor& first, const Anchor& second, nb::handle settings_object) {
     Use use(object);
     SpringSettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     settings.first = first;
     settings.second = second;
     return Springs(object.world).add(settings);

@@ -8,9 +8,9 @@ namespace skerry::python {
 
 namespace {
 
-SurfaceSettings surface_of(nb::handle given) {
+SurfaceSettings surface_of(nb::handle settings_object) {
     SurfaceSettings surface;
-    read(given, surface);
+    read(settings_object, surface);
     return surface;
 }
 

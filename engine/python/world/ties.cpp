@@ -10,11 +10,11 @@ namespace skerry::python {
 namespace {
 
 TieHandle add_tie(WorldObject& object, const BodyHandle& body, const Indices& nodes, std::optional<BodyHandle> to_body,
-                  std::optional<ColliderHandle> to_collider, nb::handle given) {
+                  std::optional<ColliderHandle> to_collider, nb::handle settings_object) {
     Use use(object);
     require_no_views(object, "add_tie");
     TieSettings settings;
-    read(given, settings);
+    read(settings_object, settings);
     settings.body = body;
     settings.nodes.assign(span_of(nodes).begin(), span_of(nodes).end());
     settings.to_body = to_body;
@@ -26,11 +26,11 @@ nb::dict values_of(const TieState& state) {
     std::vector<Index> node;
     std::vector<Vec3> force;
     std::vector<Real> error, broken;
-    for (const TiedNode& of : state.nodes) {
-        node.push_back(of.node);
-        force.push_back(of.force);
-        error.push_back(of.error);
-        broken.push_back(of.broken.value_or(infinity));
+    for (const TiedNode& tied : state.nodes) {
+        node.push_back(tied.node);
+        force.push_back(tied.force);
+        error.push_back(tied.error);
+        broken.push_back(tied.broken.value_or(infinity));
     }
     nb::dict values;
     values["kind"] = std::string(name_of(state.kind));

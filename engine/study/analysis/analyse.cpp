@@ -99,11 +99,11 @@ OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& set
     OpenParts open{.step = false, .noise = measured.is_chaotic(family)};
     for (const MeasuredQuantity& quantity : measured.quantities) {
         const StudyQuantity& r = quantity.result;
-        const Real wanted = settings.error * r.scale;
-        open.noise |= r.noise > noise_share * wanted;
+        const Real accepted = settings.error * r.scale;
+        open.noise |= r.noise > noise_share * accepted;
         // A run with a third step length is worth while: with only two, the estimate of the step error assumes order 1,
         // and a third one may show a smaller error.
-        open.step |= r.step > step_share * wanted && !(r.step < share_of_bar * r.error);
+        open.step |= r.step > step_share * accepted && !(r.step < share_of_bar * r.error);
     }
     return open;
 }

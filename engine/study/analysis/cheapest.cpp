@@ -67,7 +67,7 @@ struct Prediction {
 };
 
 Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
-                   const Option& step, const Option& tolerance, double wanted) {
+                   const Option& step, const Option& tolerance, double wanted_error) {
     Prediction found;
     found.may_be_nearest = !mesh.predicted && mesh.variant.element != ElementKind::linear;
     CheapestSettings& settings = found.settings;
@@ -80,7 +80,7 @@ Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> 
         Real error = error_with(quantity, settings.variant) / quantity.result.scale;
         if (std::isnan(error)) error = infinity;
         ++found.counted;
-        if (error <= wanted) ++found.within;
+        if (error <= wanted_error) ++found.within;
         if (!found.worst.empty() && error <= settings.error) continue;
         settings.error = error;
         found.worst = quantity.result.name;
@@ -91,7 +91,7 @@ Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> 
 }  // namespace
 
 std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
-                                                  std::span<const MeasuredQuantity> quantities, double wanted) {
+                                                  std::span<const MeasuredQuantity> quantities, double wanted_error) {
     if (std::ranges::none_of(quantities, counts)) return {};
     const std::vector<Option> meshes = mesh_options(family), steps = factor_options(family, &StudyVariant::step),
                               tolerances = factor_options(family, &StudyVariant::tolerance);
@@ -100,7 +100,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     for (const Option& mesh : meshes)
         for (const Option& step : steps)
             for (const Option& tolerance : tolerances) {
-                predictions.push_back(predict(family, quantities, mesh, step, tolerance, wanted));
+                predictions.push_back(predict(family, quantities, mesh, step, tolerance, wanted_error));
                 const double error = predictions.back().settings.error;
                 least_error = std::min(least_error, error);
                 if (predictions.back().may_be_nearest) least_measured = std::min(least_measured, error);
@@ -108,8 +108,8 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     // If no settings reach the wanted error, the cheapest settings with an error of at most this factor times the
     // smallest error are proposed. Only settings with `may_be_nearest` are considered then.
     constexpr double nearly = 1.1;
-    const bool reaches = least_error <= wanted;
-    const double target = reaches ? wanted : nearly * least_measured;
+    const bool reaches = least_error <= wanted_error;
+    const double target = reaches ? wanted_error : nearly * least_measured;
     const Prediction* best = nullptr;
     for (const Prediction& prediction : predictions)
         if (prediction.settings.error <= target && (reaches || prediction.may_be_nearest) &&
@@ -118,7 +118,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     CheapestSettings result = best->settings;
     result.reaches = reaches;
     result.sentence = reaches ? "the largest error is that of " + best->worst
-                              : "no settings reach " + percent(wanted) + ", because " + best->worst +
+                              : "no settings reach " + percent(wanted_error) + ", because " + best->worst +
                                     " still has an error of " + percent(result.error) + "; " +
                                     std::to_string(best->within) + " of " + std::to_string(best->counted) +
                                     " quantities are within it";

@@ -140,9 +140,9 @@ void combine(MeasuredQuantity& quantity) {
     r.step_order = quantity.step.order();
     r.best = r.value;
     r.best_error = r.noise;
-    const std::pair<const Convergence*, Real> parts[] = {
+    const std::pair<const Convergence*, Real> parts_of_error[] = {
         {&quantity.mesh, r.mesh}, {&quantity.step, r.step}, {&quantity.contact, r.contact}};
-    for (const auto& [convergence, error] : parts) {
+    for (const auto& [convergence, error] : parts_of_error) {
         if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
         if (convergence->irregular() && error <= matters * r.error) {
             r.best_error += error;  // this part is not extrapolated; its whole error is added
@@ -169,7 +169,8 @@ void apply_smoothed(Real value, MeasuredQuantity& quantity) {
                   ", and the error bar is a multiple of the difference";
 }
 
-void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real wanted, MeasuredQuantity& quantity) {
+void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real wanted_error,
+           MeasuredQuantity& quantity) {
     StudyQuantity& r = quantity.result;
     const auto decide = [&r](StudyVerdict verdict, const std::string& sentence) {
         r.verdict = verdict;
@@ -220,7 +221,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     constexpr Real share_of_wanted = 0.1;  // share of the wanted error below which irregular parts are ignored
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
-        if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted * r.scale)
+        if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted_error * r.scale)
             decide(StudyVerdict::irregular,
                    (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
     };
@@ -239,10 +240,10 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
                    "a run whose start differs by 1e-12 m failed, so this scene may fail by chance");
     for (const auto& [variant, value] : quantity.elements)
         if (variant.element == ElementKind::smoothed &&
-            std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))
+            std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted_error * r.scale))
             apply_smoothed(value, quantity);
     for (const auto& [variant, value] : quantity.elements)
-        if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
+        if (std::abs(value - r.value) > std::max(r.error, wanted_error * r.scale) && r.sentence.empty())
             r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +
                          short_text(value, 4) + " " + r.unit + ", outside the error bar";
 }
@@ -250,10 +251,10 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
 /// Estimates the error of a value, which value_of() takes from each run.
 template <class ValueOf>
 MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, Real scale, const ValueOf& value_of) {
-    const SeriesColumn& what = family.scene->columns[column].what;
+    const SeriesColumn& series = family.scene->columns[column].what;
     MeasuredQuantity quantity;
     StudyQuantity& r = quantity.result;
-    r.unit = what.unit;
+    r.unit = series.unit;
     r.scale = scale;
     r.value = value_of(*family.scene);
     std::vector<ConvergenceLevel> mesh, step, contact;
@@ -270,9 +271,9 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
-    quantity.mesh = Convergence(mesh, mesh_theory(what), noise, family.sizes[column]);
+    quantity.mesh = Convergence(mesh, mesh_theory(series), noise, family.sizes[column]);
     quantity.step = Convergence(step, step_theory(*family.scene), noise, family.sizes[column]);
-    r.expected_mesh_order = mesh_theory(what).least;
+    r.expected_mesh_order = mesh_theory(series).least;
     r.expected_step_order = step_theory(*family.scene).least;
     // A part of the error for which the study has no runs is zero: rigid bodies have no mesh error, scenes without
     // contacts no contact error.
@@ -396,14 +397,14 @@ std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t colum
 }
 
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
-                         Real agree_until, Real wanted) {
-    const SeriesColumn& what = family.scene->columns[column].what;
+                         Real agree_until, Real wanted_error) {
+    const SeriesColumn& series = family.scene->columns[column].what;
     const auto value_of = [&](const StudyRun& run) { return figure_value(run, column, figure, agree_until); };
     MeasuredQuantity quantity = measure_values(family, column, scale, value_of);
     StudyQuantity& r = quantity.result;
-    r.name = what.probe + "." + what.quantity + ending_of(figure);
+    r.name = series.probe + "." + series.quantity + ending_of(figure);
     r.agree_until = agree_until;
-    judge(family, column, figure, wanted, quantity);
+    judge(family, column, figure, wanted_error, quantity);
     for (const StudyRun& run : *family.all) {
         const bool comparable = std::ranges::find(family.comparable, &run) != family.comparable.end();
         r.run_values.push_back(comparable ? value_of(run) : no_value);

@@ -61,10 +61,10 @@ std::vector<Real> column_scales(const StudyFamily& family);
 /// Returns the figures of a column for which the study reports an error bar.
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);
 
-/// Measures a figure of a column. `scale` and `agree_until` belong to the column, `wanted` is the wanted relative
+/// Measures a figure of a column. `scale` and `agree_until` belong to the column, `wanted_error` is the wanted relative
 /// error.
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
-                         Real agree_until, Real wanted);
+                         Real agree_until, Real wanted_error);
 
 /// Half width of the error bar of the quantity in a run with the settings `variant`. For meshes finer than those of all
 /// runs the error is predicted. NaN if unknown.

@@ -32,8 +32,8 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
 }
 
 /// True for a component of a vector that is smaller than the wanted error of the vector.
-bool is_negligible(const StudyQuantity& q, double wanted) {
-    return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
+bool is_negligible(const StudyQuantity& q, double wanted_error) {
+    return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted_error * q.scale;
 }
 
 /// True for a quantity that is zero or mostly repeats another one: means over time, velocities, and sizes of forces.
@@ -63,12 +63,12 @@ std::string quantities_text(const StudyResult& result) {
     // Statistics of all bodies come first: the study contains them if the scene has many bodies or if bodies move
     // chaotically.
     std::stable_partition(shown.begin(), shown.end(), [&](const StudyQuantity* q) { return is_statistic(*q, result); });
-    const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
-    shown.resize(shown.size() - left);
+    const std::size_t omitted = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
+    shown.resize(shown.size() - omitted);
     for (const StudyQuantity* q : shown) width = std::max(width, q->name.size());
     std::string text;
     for (const StudyQuantity* q : shown) text += quantity_line(*q, width);
-    if (left > 0) text += "  ... and " + std::to_string(left) + " more, in the page\n";
+    if (omitted > 0) text += "  ... and " + std::to_string(omitted) + " more, in the page\n";
     if (negligible > 0)
         text += "  ... and " + std::to_string(negligible) + (negligible > 1 ? " values" : " value") + " below " +
                 percent(result.wanted_error) + " of the largest of " + (negligible > 1 ? "their" : "its") + " kind\n";
@@ -107,13 +107,13 @@ std::vector<std::string> verdict_lines(const StudyResult& result) {
     std::vector<Remark> remarks;
     for (const StudyQuantity& q : result.quantities) {
         if (q.verdict == StudyVerdict::known) continue;
-        const auto same = std::ranges::find_if(remarks, [&q](const Remark& remark) {
+        const auto found = std::ranges::find_if(remarks, [&q](const Remark& remark) {
             return remark.first->verdict == q.verdict && remark.first->sentence == q.sentence;
         });
-        if (same == remarks.end())
+        if (found == remarks.end())
             remarks.push_back({&q, 1});
         else
-            ++same->count;
+            ++found->count;
     }
     std::vector<std::string> lines;
     for (const auto& [first, count] : remarks)
@@ -126,9 +126,9 @@ std::vector<std::string> missing_lines(const StudyResult& result) {
     std::vector<std::pair<std::string, std::string>> reasons;  // pairs (status and settings of the runs, reason)
     for (const StudyRun& run : result.runs) {
         if (run.status == StudyRunStatus::ok) continue;
-        const auto same = std::ranges::find(reasons, run.message, &std::pair<std::string, std::string>::second);
-        if (same != reasons.end())
-            same->first += "; " + variant_text(run.variant);
+        const auto found = std::ranges::find(reasons, run.message, &std::pair<std::string, std::string>::second);
+        if (found != reasons.end())
+            found->first += "; " + variant_text(run.variant);
         else
             reasons.emplace_back(
                 (run.status == StudyRunStatus::left_out ? "left out" : std::string(name_of(run.status))) + ": " +

@@ -200,10 +200,10 @@ CableSettings Cables::settings(CableHandle cable) const {
          p < static_cast<std::size_t>(table.points[row].end); ++p)
         settings.points.push_back(anchors.at(table.anchor, p));
     const CableControl control = table.control[row];
-    auto& given = control == CableControl::tension  ? settings.drive.tension
-                  : control == CableControl::length ? settings.drive.length
-                                                    : settings.drive.rate;
-    given = time_table_of(table.keys_of(row));
+    auto& driven = control == CableControl::tension  ? settings.drive.tension
+                   : control == CableControl::length ? settings.drive.length
+                                                     : settings.drive.rate;
+    driven = time_table_of(table.keys_of(row));
     return settings;
 }
 

@@ -79,19 +79,20 @@ Face sorted(Face face) {
     return face;
 }
 
-/// Faces of a cavity, in the orientation of the surface: `wanted`, or by default faces_of_hollows. Throws SceneError if
-/// the body has no mesh, or if `wanted` is empty, repeats a face, or has a face that is not on the surface.
+/// Faces of a cavity, in the orientation of the surface: `user_faces`, or by default faces_of_hollows. Throws
+/// SceneError if the body has no mesh, or if `user_faces` is empty, repeats a face, or has a face that is not on the
+/// surface.
 std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::string& object,
-                               const std::optional<std::vector<Face>>& wanted) {
+                               const std::optional<std::vector<Face>>& user_faces) {
     if (model.bodies.core_nodes[body] > 0)
         refuse(object, "body", std::string("a ") + model.round_name(body) + ", which has no faces",
                "a body with a mesh");
-    if (!wanted) return faces_of_hollows(model, body);
-    if (wanted->empty()) refuse(object, "faces", "no faces", "at least one face of the surface");
+    if (!user_faces) return faces_of_hollows(model, body);
+    if (user_faces->empty()) refuse(object, "faces", "no faces", "at least one face of the surface");
     std::map<Face, Face> surface;  // key: sorted nodes; value: face as oriented on the surface
     for (const Face& face : model.body_records[body].surface) surface.emplace(sorted(face), face);
     std::vector<Face> faces;
-    for (const Face& face : *wanted) {
+    for (const Face& face : *user_faces) {
         const auto found = surface.extract(sorted(face));
         if (found.empty())
             refuse(object, "faces",
@@ -153,9 +154,9 @@ CavityFilling filling_of(const Model& model, std::size_t row, Real time) {
 }
 
 void erase_cavity(Model& model, std::size_t row) {
-    std::vector<bool> gone(model.cavities.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.cavities, model.cavity_map);
+    std::vector<bool> removed(model.cavities.size(), false);
+    removed[row] = true;
+    erase_joining_rows(removed, model.cavities, model.cavity_map);
     model.links_open = true;
     note_forces(model);
 }
@@ -240,10 +241,10 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
 
 void prepare_removal(World& world, CavityHandle cavity) {
     Model& model = WorldAccess::state_of(world).model;
-    std::vector<bool> gone(model.pipes.size(), false);
-    for (std::size_t p = 0; p < gone.size(); ++p)
-        gone[p] = model.pipes.first[p] == cavity.slot || model.pipes.second[p] == cavity.slot;
-    wake_and_erase_rows(gone, model.pipes, model.pipe_map, model);
+    std::vector<bool> removed(model.pipes.size(), false);
+    for (std::size_t p = 0; p < removed.size(); ++p)
+        removed[p] = model.pipes.first[p] == cavity.slot || model.pipes.second[p] == cavity.slot;
+    wake_and_erase_rows(removed, model.pipes, model.pipe_map, model);
 }
 
 CavityState Cavities::state(CavityHandle cavity) const {
@@ -297,11 +298,11 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
 
 namespace {
 
-/// Replaces the keys of a table row by those of `wanted`. Returns false if the row already has these keys.
+/// Replaces the keys of a table row by those of `values`. Returns false if the row already has these keys.
 template <class Table>
-bool replace_keys(Table& table, std::size_t row, const TimeTable& wanted) {
-    if (std::ranges::equal(table.keys_of(row), wanted.keys)) return false;
-    set_keys(table.keys, table.key, row, wanted.keys);
+bool replace_keys(Table& table, std::size_t row, const TimeTable& values) {
+    if (std::ranges::equal(table.keys_of(row), values.keys)) return false;
+    set_keys(table.keys, table.key, row, values.keys);
     return true;
 }
 
@@ -313,8 +314,8 @@ std::size_t row_with_law(const Model& model, CavityHandle cavity, CavityLaw law,
     return row;
 }
 
-void replace_keys_of_cavity(Model& model, std::size_t row, const TimeTable& wanted) {
-    if (!replace_keys(model.cavities, row, wanted)) return;
+void replace_keys_of_cavity(Model& model, std::size_t row, const TimeTable& values) {
+    if (!replace_keys(model.cavities, row, values)) return;
     model.wake(static_cast<std::size_t>(model.cavities.body[row]));
     note_forces(model);
 }

@@ -67,7 +67,7 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
 }
 
 /// Centre of mass, momentum and angular momentum of a body.
-struct WholeMotion {
+struct BodyMotion {
     Vec3 center;                      // centre of mass [m]
     Vec3 momentum, angular_momentum;  // angular momentum is about `center` [kg m/s, kg m^2/s]
 };
@@ -84,7 +84,7 @@ Vec3 center_of_nodes(const Model& model, std::size_t body) {
     return center / mass_of_nodes(model, body);
 }
 
-WholeMotion motion_of(const Model& model, std::size_t body) {
+BodyMotion motion_of(const Model& model, std::size_t body) {
     if (model.has_frame(body)) {
         const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
         const RigidBodyTable& table = model.rigid_bodies;
@@ -96,16 +96,16 @@ WholeMotion motion_of(const Model& model, std::size_t body) {
 }
 
 /// Adds a rigid motion to the node velocities of an explicit body, so that its momentum and its angular momentum about
-/// `wanted.center` become those of `wanted`.
-void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
+/// `target.center` become those of `target`.
+void give_nodes_momenta(Model& model, std::size_t body, const BodyMotion& target) {
     const Vec3 center = center_of_nodes(model, body);
-    const NodeMotion has = motion_of_nodes(model, body, center);
-    const Vec3 about_center = wanted.angular_momentum + (wanted.center - center).cross(wanted.momentum);
-    const Vec3 velocity = (wanted.momentum - has.momentum) / mass_of_nodes(model, body);
-    const Vec3 turn = has.inertia.inverse() * (about_center - has.angular_momentum);
+    const NodeMotion present = motion_of_nodes(model, body, center);
+    const Vec3 about_center = target.angular_momentum + (target.center - center).cross(target.momentum);
+    const Vec3 velocity = (target.momentum - present.momentum) / mass_of_nodes(model, body);
+    const Vec3 angular_velocity = present.inertia.inverse() * (about_center - present.angular_momentum);
     const Range range = model.bodies.nodes[body];
     for (Index n = range.begin; n < range.end; ++n)
-        model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
+        model.nodes.velocity[n] += velocity + angular_velocity.cross(model.nodes.position[n] - center);
 }
 
 /// Present node positions of a body in the mesh frame, whose pose is `pose` [m]. Empty if no node has moved relative to
@@ -113,14 +113,14 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
 std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const RigidPose& pose,
                                     std::span<const Vec3> mesh_shape) {
     std::vector<Vec3> shape;
-    Real most = 0;
+    Real largest = 0;
     for (const Vec3& x : rows_of(model.nodes.position, model.bodies.nodes[body])) {
         shape.push_back(pose.rotation.transpose() * (x - pose.position));
-        most = std::max(most, (shape.back() - mesh_shape[shape.size() - 1]).norm());
+        largest = std::max(largest, (shape.back() - mesh_shape[shape.size() - 1]).norm());
     }
     // Smaller displacements, divided by the mean edge length, are rounding errors of the fitted pose.
     constexpr Real rounding = 1e-12;
-    if (!(most > rounding * model.bodies.mean_edge[body])) shape.clear();
+    if (!(largest > rounding * model.bodies.mean_edge[body])) shape.clear();
     return shape;
 }
 
@@ -180,9 +180,9 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     try {
         validate_step(model, row, record.name);
     } catch (const SceneError&) {
-        std::vector<std::uint8_t> gone(after + 1, 0);
-        gone[after] = 1;
-        erase_gone(row_moves(model, gone, {}), model);
+        std::vector<std::uint8_t> removed(after + 1, 0);
+        removed[after] = 1;
+        erase_gone(row_moves(model, removed, {}), model);
         throw;
     }
     return after;
@@ -196,35 +196,35 @@ void copy_node_rows(Column<Vec3>& column, Range from, Range to) {
 /// copies node positions and velocities.
 void take_state(WorldState& world, std::size_t before, std::size_t after) {
     Model& model = world.model;
-    const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
-    const WholeMotion whole = motion_of(model, before);
+    const Range nodes_before = model.bodies.nodes[before], nodes_after = model.bodies.nodes[after];
+    const BodyMotion motion = motion_of(model, before);
     model.bodies.surface[after] = model.bodies.surface[before];
-    copy_node_rows(model.nodes.load, from, to);
-    copy_node_rows(model.nodes.applied_before, from, to);
+    copy_node_rows(model.nodes.load, nodes_before, nodes_after);
+    copy_node_rows(model.nodes.applied_before, nodes_before, nodes_after);
     model.note_loads(after, false);
     hand_over_rows(before, after, model);
     note_forces(model);
     model.body_records[after].settled = model.body_records[before].settled;
     if (model.is_rigid(after)) {
-        set_momenta(model, after, whole.momentum, whole.angular_momentum);
+        set_momenta(model, after, motion.momentum, motion.angular_momentum);
         return;
     }
-    copy_node_rows(model.nodes.position, from, to);
-    copy_node_rows(model.nodes.displacement_origin, from, to);
-    copy_node_rows(model.nodes.velocity, from, to);
+    copy_node_rows(model.nodes.position, nodes_before, nodes_after);
+    copy_node_rows(model.nodes.displacement_origin, nodes_before, nodes_after);
+    copy_node_rows(model.nodes.velocity, nodes_before, nodes_after);
     if (!model.has_frame(after)) {
-        give_nodes_momenta(model, after, whole);
+        give_nodes_momenta(model, after, motion);
         relax_fully(model, after);
         model.bodies.stable_step[after] =
             evaluate_stable_step(model, after, model.nodes.position, world.scratch.stiffness_sum);
         return;
     }
-    const std::span<const Vec3> there = rows_of(model.nodes.position, from),
-                                moving = rows_of(model.nodes.velocity, from);
-    set_deformed_shape(model, after, there);
-    std::ranges::copy(moving, rows_of(model.nodes.velocity, to).begin());
+    const std::span<const Vec3> position = rows_of(model.nodes.position, nodes_before),
+                                velocity = rows_of(model.nodes.velocity, nodes_before);
+    set_deformed_shape(model, after, position);
+    std::ranges::copy(velocity, rows_of(model.nodes.velocity, nodes_after).begin());
     follow_node_velocities(model, after);
-    set_momenta(model, after, whole.momentum, whole.angular_momentum);
+    set_momenta(model, after, motion.momentum, motion.angular_momentum);
 }
 
 }  // namespace
@@ -236,14 +236,14 @@ void relax_fully(Model& model, std::size_t body) {
     kernels().element_strains(elements, blocks, model.nodes.position, strain);
     for (Index b = blocks.begin; b < blocks.end; ++b) {
         if (!elements.material_of(static_cast<std::size_t>(b)).relaxes()) continue;
-        SpringStrain& taken = model.elements.spring_strain[static_cast<std::size_t>(b)];
-        taken = {};
+        SpringStrain& spring_strain = model.elements.spring_strain[static_cast<std::size_t>(b)];
+        spring_strain = {};
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Mat3& E = strain[static_cast<std::size_t>(b - blocks.begin) * element_lanes + l];
             const std::array<Real, 6> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)};
-            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = static_cast<float>(2 * entry[i]);
+            for (std::size_t i = 0; i < entry.size(); ++i) spring_strain[i][l] = static_cast<float>(2 * entry[i]);
         }
-        model.elements.spring_strain_next[static_cast<std::size_t>(b)] = taken;
+        model.elements.spring_strain_next[static_cast<std::size_t>(b)] = spring_strain;
     }
 }
 
@@ -260,8 +260,8 @@ void World::set_dynamics(BodyHandle body, BodyDynamics dynamics) {
     edits.places.add_body(model, before);
     edits.places.add_body(model, after);
     model.body_map.rename(body, static_cast<Index>(after));
-    edits.bodies_gone.resize(after + 1, 0);
-    edits.bodies_gone[before] = 1;
+    edits.removed_bodies.resize(after + 1, 0);
+    edits.removed_bodies[before] = 1;
     edits.rows = edits.elements = true;
     state_->settle();
 }

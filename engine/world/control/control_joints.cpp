@@ -171,9 +171,9 @@ PointVelocity velocity_at(const Model& model, Index body, const Vec3& point) {
 /// True if another joint of the same two bodies switches off collisions between them.
 bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
-        const bool same = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||
-                          (table.first[j] == table.second[joint] && table.second[j] == table.first[joint]);
-        if (j != joint && same && table.parts[j] != 0) return true;
+        const bool same_pair = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||
+                               (table.first[j] == table.second[joint] && table.second[j] == table.first[joint]);
+        if (j != joint && same_pair && table.parts[j] != 0) return true;
     }
     return false;
 }
@@ -300,9 +300,9 @@ JointState joint_state(const Model& model, JointHandle joint) {
                         of_second = velocity_at(model, joints.second[j], first.point);
     if (now.kind == JointKind::hinge) now.speed = now.axis.dot(of_first.spin - of_second.spin);
     if (now.kind == JointKind::slider) now.speed = now.axis.dot(of_first.velocity - of_second.velocity);
-    Vec3 apart = first.point - second.point;
-    if (now.kind == JointKind::slider) apart -= now.axis.dot(apart) * now.axis;
-    now.error = apart.norm();
+    Vec3 separation = first.point - second.point;
+    if (now.kind == JointKind::slider) separation -= now.axis.dot(separation) * now.axis;
+    now.error = separation.norm();
     if (!(joints.step[j] > 0)) return now;
     const Mat3& axes = model.joints.impulse_axes[j];
     now.force = axes * joints.impulse[j] / joints.step[j];
@@ -326,13 +326,13 @@ void Joints::set_motor(JointHandle joint, const std::optional<JointMotor>& motor
         refuse_joint("motor", "a motor on a " + std::string(name_of(model.joints.kind[row])) + " joint",
                      "a motor on a hinge or slider");
     if (motor) validate_motor(*motor);
-    const JointMotorRow wanted = row_of(motor);
-    if (model.joints.drive[row] == drive_of(motor) && model.joints.motor[row] == wanted &&
+    const JointMotorRow new_row = row_of(motor);
+    if (model.joints.drive[row] == drive_of(motor) && model.joints.motor[row] == new_row &&
         has_keys(model.joints, row, motor))
         return;
     set_keys(model.joints, row, motor);
     model.joints.drive[row] = drive_of(motor);
-    model.joints.motor[row] = wanted;
+    model.joints.motor[row] = new_row;
     wake_both(model, row);
 }
 
@@ -379,9 +379,10 @@ void Joints::set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic
     Index leader = no_index;
     if (mimic) {
         leader = model.row(mimic->leader, "set_mimic");
-        for (const std::size_t one : {row, static_cast<std::size_t>(leader)})
-            if (!has_axis(table.kind[one]))
-                refuse_joint("mimic", "a " + std::string(name_of(table.kind[one])) + " joint", "a hinge or a slider");
+        for (const std::size_t joint_row : {row, static_cast<std::size_t>(leader)})
+            if (!has_axis(table.kind[joint_row]))
+                refuse_joint("mimic", "a " + std::string(name_of(table.kind[joint_row])) + " joint",
+                             "a hinge or a slider");
         if (!std::isfinite(mimic->ratio) || mimic->ratio == 0)
             refuse_joint("mimic.ratio", short_text(mimic->ratio), "a finite number that is not 0");
         if (!std::isfinite(mimic->offset))

@@ -90,10 +90,10 @@ void require_faces(std::span<const std::array<Index, 3>> faces, const Model& mod
                "faces of body '" + record.name + "', which is a " + std::string(model.round_name(body)),
                "a body with a mesh");
     if (faces.empty()) refuse(object, "faces", "an empty list", "at least one face");
-    std::set<std::array<Index, 3>> left;
-    for (const std::array<Index, 3>& face : record.surface) left.insert(mesh::sorted_face(face));
+    std::set<std::array<Index, 3>> unmatched;
+    for (const std::array<Index, 3>& face : record.surface) unmatched.insert(mesh::sorted_face(face));
     for (const std::array<Index, 3>& face : faces)
-        if (left.erase(mesh::sorted_face(face)) == 0)
+        if (unmatched.erase(mesh::sorted_face(face)) == 0)
             refuse(object, "faces",
                    "the face of the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
                        std::to_string(face[2]),
@@ -148,11 +148,11 @@ LoadHandle Loads::add(const ForceLoad& load) {
     if (load.nodes.empty()) refuse(object, "nodes", "an empty list", "at least one node");
     require_different_nodes(object, load.nodes, nodes.size());
     LoadRow row{.kind = LoadKind::force, .body = body, .vector = load.force, .node = load.nodes};
-    Real whole = 0;
+    Real total = 0;
     const auto mass = [&](Index node) { return model.weight_of_node(static_cast<std::size_t>(nodes.begin + node)); };
-    for (const Index node : load.nodes) whole += mass(node);
-    if (!(whole > 0)) refuse(object, "nodes", "nodes without mass", "at least one node with a mass");
-    for (const Index node : load.nodes) row.weight.push_back(mass(node) / whole);
+    for (const Index node : load.nodes) total += mass(node);
+    if (!(total > 0)) refuse(object, "nodes", "nodes without mass", "at least one node with a mass");
+    for (const Index node : load.nodes) row.weight.push_back(mass(node) / total);
     return append_load(*world_, row, load.scale);
 }
 

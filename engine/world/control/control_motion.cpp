@@ -46,20 +46,20 @@ struct Scripted {
         script().start = now;
         table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
-    /// Replaces the script by the key `from` and the poses `to`. A rotation has many rotation vectors, which differ by
-    /// full revolutions. Each key gets the vector nearest to that of the previous key, so that the object makes no
+    /// Replaces the script by the key `start` and the poses `poses`. A rotation has many rotation vectors, which differ
+    /// by full revolutions. Each key gets the vector nearest to that of the previous key, so that the object makes no
     /// additional revolution.
-    void start_keys(const Keyframe& from, std::span<const Keyframe> to) const {
-        if (keys().size() != to.size() + 1) {
+    void start_keys(const Keyframe& start, std::span<const Keyframe> poses) const {
+        if (keys().size() != poses.size() + 1) {
             erase_keys();
-            for (std::size_t k = 0; k <= to.size(); ++k) table.keyframe.push_back({});
+            for (std::size_t k = 0; k <= poses.size(); ++k) table.keyframe.push_back({});
             script().key_end = static_cast<Index>(table.keyframe.size());
         }
         script().velocity = script().angular_velocity = Vec3::Zero();
         script().start = 0;
         Keyframe* key = &table.keyframe[static_cast<std::size_t>(script().key_begin)];
-        *key = from;
-        for (const Keyframe& next : to) {
+        *key = start;
+        for (const Keyframe& next : poses) {
             key[1] = {next.time, next.position, nearest_turn(next.rotation, key->rotation)};
             ++key;
         }
@@ -89,23 +89,23 @@ bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const V
     return true;
 }
 
-/// Moves an object from its present pose to each of the poses `to` in turn, with constant velocities between them.
+/// Moves an object from its present pose to each of the poses `poses` in turn, with constant velocities between them.
 /// Keeps the script if the object already rests at the last pose, or if its script already moves it to this pose by the
 /// same time.
 template <class Table>
-void follow(const Scripted<Table>& scripted, std::span<const Keyframe> to, Real now) {
-    const RigidPose from = scripted.pose(now);
+void follow(const Scripted<Table>& scripted, std::span<const Keyframe> poses, Real now) {
+    const RigidPose present = scripted.pose(now);
     const MotionScript& script = scripted.script();
-    const Pose end{to.back().position, to.back().rotation};
+    const Pose end{poses.back().position, poses.back().rotation};
     const bool is_still = scripted.has_keys()
                               ? !(now < scripted.keys().back().time)
                               : script.velocity == Vec3::Zero() && script.angular_velocity == Vec3::Zero();
-    if (is_still && is_at(from, end)) return;
-    const bool has_target = scripted.keys().size() == to.size() + 1;
-    if (has_target && scripted.keys().back().time == to.back().time && scripted.keys().front().time <= now &&
+    if (is_still && is_at(present, end)) return;
+    const bool has_target = scripted.keys().size() == poses.size() + 1;
+    if (has_target && scripted.keys().back().time == poses.back().time && scripted.keys().front().time <= now &&
         is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, end))
         return;
-    scripted.start_keys({now, from.position, rotation_vector(from.rotation)}, to);
+    scripted.start_keys({now, present.position, rotation_vector(present.rotation)}, poses);
 }
 
 template <class Table>
@@ -142,28 +142,29 @@ void for_each_script(Model& model, Index collider, auto&& change) {
         change(Scripted{model.attachments, static_cast<std::size_t>(a)});
 }
 
-/// Positions of all nodes of a body after one of its attachments was moved from the pose `from` to `pose`. If this
+/// Positions of all nodes of a body after one of its attachments was moved from the pose `old_pose` to `pose`. If this
 /// attachment holds the frame of the body, free nodes move rigidly with it. Nodes that the attachment holds in some
 /// directions move in these directions only. Nodes that other attachments hold completely do not move.
-std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
+std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& old_pose,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(table.body[attachment])];
-    const std::span<const Vec3> now = model.nodes.position.span().subspan(static_cast<std::size_t>(nodes.begin),
-                                                                          static_cast<std::size_t>(nodes.size()));
-    std::vector<Vec3> position(now.begin(), now.end());
+    const std::span<const Vec3> present = model.nodes.position.span().subspan(static_cast<std::size_t>(nodes.begin),
+                                                                              static_cast<std::size_t>(nodes.size()));
+    std::vector<Vec3> position(present.begin(), present.end());
     const Range frame = model.bodies.rigid[static_cast<std::size_t>(table.body[attachment])];
     if (frame.size() > 0 &&
         model.rigid_bodies.holder[static_cast<std::size_t>(frame.begin)] == static_cast<Index>(attachment))
         for (std::size_t n = 0; n < position.size(); ++n)
             if (model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] > 0)
-                position[n] = pose.position + pose.rotation * (from.rotation.transpose() * (now[n] - from.position));
+                position[n] =
+                    pose.position + pose.rotation * (old_pose.rotation.transpose() * (present[n] - old_pose.position));
     for (Index i = table.nodes[attachment].begin; i < table.nodes[attachment].end; ++i) {
         const auto at = static_cast<std::size_t>(i);
         Vec3& x = position[static_cast<std::size_t>(table.node[at] - nodes.begin)];
-        const Vec3 there = pose.position + pose.rotation * table.anchor[at];
+        const Vec3 target = pose.position + pose.rotation * table.anchor[at];
         const Mat3& held = table.held[attachment];
-        x = holds_completely(held) ? there : Vec3(x + held * (held.transpose() * (there - x)));
+        x = holds_completely(held) ? target : Vec3(x + held * (held.transpose() * (target - x)));
     }
     return position;
 }

@@ -146,10 +146,10 @@ SpringState spring_state(const WorldState& world, SpringHandle spring) {
     SpringState state;
     state.first = anchors.at(model.springs.first, row);
     state.second = anchors.at(model.springs.second, row);
-    const Vec3 apart = state.first.point - state.second.point;
-    state.length = apart.norm();
+    const Vec3 separation = state.first.point - state.second.point;
+    state.length = separation.norm();
     if (state.length > 0)
-        state.rate = apart.dot(inputs.first.velocity(row) - inputs.second.velocity(row)) / state.length;
+        state.rate = separation.dot(inputs.first.velocity(row) - inputs.second.velocity(row)) / state.length;
     state.rest_length = inputs.rest(row, world.clock.time);
     state.force = model.springs.tension[row];
     state.energy = inputs.law(row).energy(state.length - state.rest_length);

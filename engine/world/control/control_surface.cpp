@@ -103,8 +103,8 @@ void SurfacePairs::remove(MaterialHandle first, MaterialHandle second) {
     MaterialPairTable& table = model.material_pairs;
     const auto row = static_cast<Index>(table.place_of(rows.first, rows.second));
     if (!table.is_pair(static_cast<std::size_t>(row), rows.first, rows.second)) return;
-    const Range gone{row, row + 1};
-    AnyTable(table).erase({&gone, 1});
+    const Range removed{row, row + 1};
+    AnyTable(table).erase({&removed, 1});
     wake_bodies_of(model, rows.first, rows.second);
 }
 

@@ -187,11 +187,11 @@ RigidPose frame_of(const Model& model, const TiedObjects& objects, std::span<con
     return {of.position, of.rotation};
 }
 
-void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& place, const Vec3& normal) {
+void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& rest_point, const Vec3& normal) {
     table.node.push_back(node);
     table.corner.push_back(on.corner);
     table.weight.push_back(on.weight);
-    table.place.push_back(place);
+    table.place.push_back(rest_point);
     table.normal.push_back(normal);
     table.impulse.push_back(Vec3::Zero());
     table.broken.push_back(infinity);
@@ -350,8 +350,8 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
         if (table.step[t] > 0) node.force = table.impulse[k] / table.step[t];
         if (table.broken[k] < infinity) node.broken = table.broken[k];
         const TieTarget target = inputs.target(t, k);
-        const Vec3 apart = (is_ball ? now.point : position(k)) - target.point;
-        node.error = now.kind == TieKind::slide ? std::abs(target.normal.dot(apart)) : apart.norm();
+        const Vec3 separation = (is_ball ? now.point : position(k)) - target.point;
+        node.error = now.kind == TieKind::slide ? std::abs(target.normal.dot(separation)) : separation.norm();
         now.force += node.force;
         now.moment += (position(k) - now.point).cross(node.force);
         if (!node.broken) now.error = std::max(now.error, node.error);

@@ -51,22 +51,23 @@ void hold_values(Model& model, Real t) {
 }
 
 /// Multiplies forces, tractions, acceleration fields, prescribed pressures, and tensions of cables and fibres at the
-/// time `t` by `share`. Gravity factors and drag keep their values. `given`: the model before hold_values(), with the
-/// full values.
-void set_load_share(Model& model, const Model& given, Real t, Real share) {
-    const auto set = [&](auto& table, const auto& from, std::size_t row) {
-        hold_keys(table, row, share * value_at(from.keys_of(row), t));
+/// time `t` by `load_fraction`. Gravity factors and drag keep their values. `full_loads`: the model before
+/// hold_values(), with the full values.
+void set_load_fraction(Model& model, const Model& full_loads, Real t, Real load_fraction) {
+    const auto scale_keys = [&](auto& table, const auto& from, std::size_t row) {
+        hold_keys(table, row, load_fraction * value_at(from.keys_of(row), t));
     };
     for (std::size_t l = 0; l < model.loads.size(); ++l)
         if (const LoadKind kind = model.loads.kind[l];
             kind == LoadKind::force || kind == LoadKind::traction || kind == LoadKind::acceleration)
-            set(model.loads, given.loads, l);
+            scale_keys(model.loads, full_loads.loads, l);
     for (std::size_t c = 0; c < model.cavities.size(); ++c)
-        if (model.cavities.law[c] == CavityLaw::pressure) set(model.cavities, given.cavities, c);
+        if (model.cavities.law[c] == CavityLaw::pressure) scale_keys(model.cavities, full_loads.cavities, c);
     for (std::size_t c = 0; c < model.cables.size(); ++c)
-        if (model.cables.control[c] == CableControl::tension) set(model.cables, given.cables, c);
-    for (std::size_t f = 0; f < model.fibres.size(); ++f) set(model.fibres, given.fibres, f);
-    for (std::size_t n = 0; n < model.nodes.load.size(); ++n) model.nodes.load[n] = share * given.nodes.load[n];
+        if (model.cables.control[c] == CableControl::tension) scale_keys(model.cables, full_loads.cables, c);
+    for (std::size_t f = 0; f < model.fibres.size(); ++f) scale_keys(model.fibres, full_loads.fibres, f);
+    for (std::size_t n = 0; n < model.nodes.load.size(); ++n)
+        model.nodes.load[n] = load_fraction * full_loads.nodes.load[n];
     note_forces(model);
 }
 
@@ -80,35 +81,35 @@ void hold_poses(auto& table, Real t) {
     }
 }
 
-/// Gives colliders or attachments the motion that they have in `from`.
-void take_motion(auto& to, const auto& from) {
-    to.script = from.script;
-    to.initial = from.initial;
-    to.motion = from.motion;
+/// Gives colliders or attachments the motion that they have in `source`.
+void take_motion(auto& target, const auto& source) {
+    target.script = source.script;
+    target.initial = source.initial;
+    target.motion = source.motion;
 }
 
-/// Gives a cable the work and the dissipated energy that it has in the world `from`.
-void take_work(WorldState& to, const WorldState& from, std::size_t cable) {
-    const CableHandle handle = to.model.cable_map.handle_of_slot(to.model.cables.slot[cable]);
-    const CableState before = cable_state(from, handle), now = cable_state(to, handle);
-    to.model.cables.work[cable] += before.work - now.work;
-    to.model.cables.dissipated[cable] += before.dissipated - now.dissipated;
+/// Gives a cable the work and the dissipated energy that it has in the world `source`.
+void take_work(WorldState& target, const WorldState& source, std::size_t cable) {
+    const CableHandle handle = target.model.cable_map.handle_of_slot(target.model.cables.slot[cable]);
+    const CableState before = cable_state(source, handle), now = cable_state(target, handle);
+    target.model.cables.work[cable] += before.work - now.work;
+    target.model.cables.dissipated[cable] += before.dissipated - now.dissipated;
 }
 
-/// Undoes hold_values(), and restores the flows of pipes. `from`: the model before hold_values().
-void take_values(Model& to, Model& from) {
+/// Undoes hold_values(), and restores the flows of pipes. `source`: the model before hold_values().
+void take_values(Model& target, Model& source) {
     std::vector<Column<TimeKey>*> columns;
     const auto visit_keys = [](Model& model, auto&& visit) {
         model.for_each_joining([&](const char*, auto& table, auto&) {
             if constexpr (requires { table.keys_of(0); }) visit(table.key);
         });
     };
-    visit_keys(to, [&](Column<TimeKey>& key) { columns.push_back(&key); });
+    visit_keys(target, [&](Column<TimeKey>& key) { columns.push_back(&key); });
     std::size_t table = 0;
-    visit_keys(from, [&](Column<TimeKey>& key) { *columns[table++] = key; });
-    to.pipes.conductance = from.pipes.conductance;
-    to.pipes.flow = from.pipes.flow;
-    to.ties.break_force = from.ties.break_force;
+    visit_keys(source, [&](Column<TimeKey>& key) { *columns[table++] = key; });
+    target.pipes.conductance = source.pipes.conductance;
+    target.pipes.flow = source.pipes.flow;
+    target.ties.break_force = source.ties.break_force;
 }
 
 /// Sets Settings::sleep and Settings::tolerance, and the step parameters that follow from them. Called before a
@@ -116,9 +117,10 @@ void take_values(Model& to, Model& from) {
 void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
     world.model.settings.sleep = sleep;
     world.model.settings.tolerance = tolerance;
-    const Real kick = world.scratch.parameters.kick;
+    // force interval of the last step, from which the forces of its contacts are computed [s]
+    const Real kick_time = world.scratch.parameters.kick_time;
     world.scratch.parameters = step_parameters(world.model.settings, world.model.tuning);
-    world.scratch.parameters.kick = kick;  // force interval of the last step [s], for the forces of its contacts
+    world.scratch.parameters.kick_time = kick_time;
 }
 
 /// Gives the relaxed world the run record that the world had before the relaxation. Only the list of contacts is built
@@ -217,16 +219,16 @@ private:
         const NodeTable& nodes = model.nodes;
         bodies_.assign(model.bodies.slot.size(), {});
         for (std::size_t n = 0; n < nodes.position.size(); ++n) {
-            BodyBalance& of = bodies_[static_cast<std::size_t>(nodes.body[n])];
+            BodyBalance& balance = bodies_[static_cast<std::size_t>(nodes.body[n])];
             if (!(nodes.inverse_mass[n] > 0)) continue;
             const Real mass = model.weight_of_node(n), speed = nodes.velocity[n].norm();
-            Vec3 given = mass * model.settings.gravity;
-            if (model.forced) given += nodes.applied_force[n];
-            of.forces += given.norm();
-            of.out_of_balance += mass * (nodes.velocity[n] - before_[n]).norm() / h;
-            of.momentum += mass * speed;
-            of.kinetic += mass * speed * speed / 2;
-            of.speed = std::max(of.speed, speed);
+            Vec3 external_force = mass * model.settings.gravity;
+            if (model.forced) external_force += nodes.applied_force[n];
+            balance.forces += external_force.norm();
+            balance.out_of_balance += mass * (nodes.velocity[n] - before_[n]).norm() / h;
+            balance.momentum += mass * speed;
+            balance.kinetic += mass * speed * speed / 2;
+            balance.speed = std::max(balance.speed, speed);
         }
         const ContactTable& contacts = state_.scratch.contacts;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -235,7 +237,7 @@ private:
             if (contacts.second_body[c] != no_index)
                 bodies_[static_cast<std::size_t>(contacts.second_body[c])].forces += force;
         }
-        for (const BodyBalance& of : bodies_) largest_ = std::max(largest_, of.out_of_balance);
+        for (const BodyBalance& balance : bodies_) largest_ = std::max(largest_, balance.out_of_balance);
     }
 
     /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual. A body is
@@ -247,13 +249,13 @@ private:
         bool in_balance = true;
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             if (!moves(b)) continue;
-            const BodyBalance& of = bodies_[b];
-            const Real scale = of.forces > 0 ? of.forces : largest_;
-            const Real residual = scale > 0 ? of.out_of_balance / scale : 0;
-            in_balance &= residual <= settings_.tolerance && of.momentum <= settings_.tolerance * scale * time;
+            const BodyBalance& balance = bodies_[b];
+            const Real scale = balance.forces > 0 ? balance.forces : largest_;
+            const Real residual = scale > 0 ? balance.out_of_balance / scale : 0;
+            in_balance &= residual <= settings_.tolerance && balance.momentum <= settings_.tolerance * scale * time;
             if (report.worst && residual <= report.residual) continue;
             report.residual = residual;
-            report.speed = of.speed;
+            report.speed = balance.speed;
             report.worst = state_.model.body_map.handle_of_slot(state_.model.bodies.slot[b]);
             report.worst_name = state_.model.body_records[b].name;
         }
@@ -292,9 +294,9 @@ void prepare(WorldState& world, Real t, Real tolerance) {
     note_changed_seams(world.model);
 }
 
-/// Relaxes `copy` with growing shares of the loads of `given`, until the whole loads are reached. If a relaxation
+/// Relaxes `copy` with growing shares of the loads of `unrelaxed`, until the whole loads are reached. If a relaxation
 /// fails, returns to the last equilibrium and halves the increment of the loads.
-RelaxReport grow_loads(World& copy, const WorldState& given, const RelaxSettings& settings,
+RelaxReport grow_loads(World& copy, const WorldState& unrelaxed, const RelaxSettings& settings,
                        const std::function<bool(const RelaxReport&)>& go_on) {
     constexpr Real smallest = 1.0 / 64;  // smallest increment of the loads, as a fraction of a load step
     RelaxReport report;
@@ -309,11 +311,12 @@ RelaxReport grow_loads(World& copy, const WorldState& given, const RelaxSettings
     std::optional<World> balanced;  // the world in the last equilibrium
     if (grows) balanced = copy.clone();
     while (!report.converged) {
-        const Real left = 1 - report.load, share = left < 1.5 * increment ? 1 : report.load + increment;
-        set_load_share(WorldAccess::state_of(copy).model, given.model, given.clock.time, share);
+        const Real remaining_load = 1 - report.load,
+                   load = remaining_load < 1.5 * increment ? 1 : report.load + increment;
+        set_load_fraction(WorldAccess::state_of(copy).model, unrelaxed.model, unrelaxed.clock.time, load);
         if (Relaxation(copy, settings).run(watch, report)) {
-            report.load = share;
-            report.converged = share == 1;
+            report.load = load;
+            report.converged = load == 1;
             if (grows) balanced = copy.clone();
             continue;
         }
@@ -336,17 +339,17 @@ RelaxReport relax(World& world, const RelaxSettings& settings, const std::functi
     world.settle_start();
     World copy = world.clone();
     WorldState& before = WorldAccess::state_of(world);
-    const Settings& given = before.model.settings;
-    prepare(WorldAccess::state_of(copy), before.clock.time, std::min(given.tolerance, settings.tolerance / 10));
+    const Settings& user_settings = before.model.settings;
+    prepare(WorldAccess::state_of(copy), before.clock.time, std::min(user_settings.tolerance, settings.tolerance / 10));
     const RelaxReport report = grow_loads(copy, before, settings, go_on);
     if (!report.converged) return report;
     WorldState& now = WorldAccess::state_of(copy);
     take_values(now.model, before.model);
     take_motion(now.model.colliders, before.model.colliders);
     take_motion(now.model.attachments, before.model.attachments);
-    set_for_relaxation(now, given.sleep, given.tolerance);
-    now.model.settings.backend = given.backend;
-    now.model.settings.threads = given.threads;
+    set_for_relaxation(now, user_settings.sleep, user_settings.tolerance);
+    now.model.settings.backend = user_settings.backend;
+    now.model.settings.threads = user_settings.threads;
     now.clock = before.clock;
     for (std::size_t c = 0; c < now.model.cables.size(); ++c) take_work(now, before, c);
     std::swap(now.executor, before.executor);

@@ -147,27 +147,27 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
                                                                           : BodyDynamics::explicit_elastic;
 }
 
-Index outdated_choice(const Model& model, DynamicsEstimate& now) {
+Index outdated_choice(const Model& model, DynamicsEstimate& updated) {
     // A choice is tested again if the implicit step that it assumed exceeds the present one by more than this factor.
     constexpr Real much_longer = 1.5;
     if (model.implicit_nodes.size() == 0) return no_index;
-    const Real step = step_with_frame(model), others = cost_of_elements(model.elements.volume.size());
+    const Real step = step_with_frame(model), cost_of_all = cost_of_elements(model.elements.volume.size());
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        const DynamicsEstimate& before = model.body_records[b].choice;
-        if (before.reason != DynamicsReason::cost || model.dynamics_of(b) != BodyDynamics::implicit_elastic ||
-            !(before.implicit_step > much_longer * step))
+        const DynamicsEstimate& old = model.body_records[b].choice;
+        if (old.reason != DynamicsReason::cost || model.dynamics_of(b) != BodyDynamics::implicit_elastic ||
+            !(old.implicit_step > much_longer * step))
             continue;
-        now = before;
-        now.implicit_step = step;
-        now.deforming_step = std::max(step, model.settings.implicit_step);
-        now.explicit_step = std::min(before.explicit_step, step);
-        // The costs in `before` already include the bodies that existed at the first estimate, so `others` counts these
-        // bodies twice. Both new costs are thus too large. The error of the explicit cost is the larger one, because
-        // its step is shorter. A body therefore becomes explicit only if this certainly saves time.
-        now.explicit_cost = (others + before.explicit_cost * before.explicit_step) / now.explicit_step;
-        now.implicit_cost = (others + before.implicit_cost * before.implicit_step) / step;
-        now.damped_above = 0;  // an explicit body is not damped by its steps
-        if (!(now.implicit_cost * least_saving < now.explicit_cost)) return static_cast<Index>(b);
+        updated = old;
+        updated.implicit_step = step;
+        updated.deforming_step = std::max(step, model.settings.implicit_step);
+        updated.explicit_step = std::min(old.explicit_step, step);
+        // The costs in `old` already include the bodies that existed at the first estimate, so `cost_of_all` counts
+        // these bodies twice. Both new costs are thus too large. The error of the explicit cost is the larger one,
+        // because its step is shorter. A body therefore becomes explicit only if this certainly saves time.
+        updated.explicit_cost = (cost_of_all + old.explicit_cost * old.explicit_step) / updated.explicit_step;
+        updated.implicit_cost = (cost_of_all + old.implicit_cost * old.implicit_step) / step;
+        updated.damped_above = 0;  // an explicit body is not damped by its steps
+        if (!(updated.implicit_cost * least_saving < updated.explicit_cost)) return static_cast<Index>(b);
     }
     return no_index;
 }

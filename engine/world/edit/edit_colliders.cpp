@@ -131,8 +131,8 @@ void erase_attachment(Model& model, Index row) {
     std::vector<Index> row_now;
     for (Index i = 0; i < static_cast<Index>(table.slot.size()); ++i)
         row_now.push_back(i == row ? no_index : i - (i > row));
-    const Range gone{row, row + 1};
-    erase_scripted_rows({&gone, 1}, table);
+    const Range removed{row, row + 1};
+    erase_scripted_rows({&removed, 1}, table);
     model.attachment_map.rows_moved(row_now);
 }
 

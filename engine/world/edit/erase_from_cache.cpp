@@ -57,25 +57,25 @@ private:
 
 /// Calls renumber(row) for each row with is_gone(row) false. Returns the ranges of all other rows.
 std::vector<Range> take_rows(std::size_t count, auto&& is_gone, auto&& renumber) {
-    std::vector<Range> gone;
+    std::vector<Range> removed;
     for (std::size_t row = 0; row < count; ++row) {
         const auto index = static_cast<Index>(row);
         if (is_gone(row))
-            append_gone(Range{index, index + 1}, gone);
+            append_gone(Range{index, index + 1}, removed);
         else
             renumber(row);
     }
-    return gone;
+    return removed;
 }
 
 /// Moves the candidate lists of the remaining pairs to the pairs' new rows. The lists of removed pairs move to the end,
 /// so that later pairs can reuse their memory.
-void move_lists(std::span<const Range> gone, std::size_t count, PairTable& pairs) {
-    if (gone.empty()) return;
-    std::size_t to = static_cast<std::size_t>(gone.front().begin);
-    for (std::size_t i = 0; i < gone.size(); ++i) {
-        const std::size_t stop = i + 1 < gone.size() ? static_cast<std::size_t>(gone[i + 1].begin) : count;
-        for (auto from = static_cast<std::size_t>(gone[i].end); from < stop; ++from, ++to) {
+void move_lists(std::span<const Range> removed, std::size_t count, PairTable& pairs) {
+    if (removed.empty()) return;
+    std::size_t to = static_cast<std::size_t>(removed.front().begin);
+    for (std::size_t i = 0; i < removed.size(); ++i) {
+        const std::size_t stop = i + 1 < removed.size() ? static_cast<std::size_t>(removed[i + 1].begin) : count;
+        for (auto from = static_cast<std::size_t>(removed[i].end); from < stop; ++from, ++to) {
             pairs.candidates[from].swap(pairs.candidates[to]);
             pairs.asleep_until[from].swap(pairs.asleep_until[to]);
             std::swap(pairs.leaf_pairs[from], pairs.leaf_pairs[to]);
@@ -91,7 +91,7 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
     SearchState& search = cache.search;
     const std::size_t count = pairs.size();
     const CacheRows rows(moves, pairs);
-    const std::vector<Range> gone = take_rows(
+    const std::vector<Range> removed = take_rows(
         count,
         [&](std::size_t p) {
             const bool goes = rows.is_gone(p);
@@ -99,13 +99,13 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
             return goes;
         },
         [&](std::size_t p) { rows.renumber(p); });
-    move_lists(gone, count, pairs);
-    AnyTable(pairs).erase(gone);
-    pairs.self.origin.erase(moves.gone.nodes);
-    search.body_valid_until.erase(moves.gone.bodies);
-    search.memory.rebase.erase(moves.gone.bodies);
-    search.collider_valid_until.erase(moves.colliders_gone);
-    search.memory.collider_extent.erase(moves.colliders_gone);
+    move_lists(removed, count, pairs);
+    AnyTable(pairs).erase(removed);
+    pairs.self.origin.erase(moves.removed.nodes);
+    search.body_valid_until.erase(moves.removed.bodies);
+    search.memory.rebase.erase(moves.removed.bodies);
+    search.collider_valid_until.erase(moves.removed_colliders);
+    search.memory.collider_extent.erase(moves.removed_colliders);
 }
 
 std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts) {
@@ -115,7 +115,7 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
     const auto is_gone = [&](std::span<const Index> row_now, Index row) {
         return row != no_index && now(row_now, row) == no_index;
     };
-    const std::vector<Range> gone = take_rows(
+    const std::vector<Range> removed = take_rows(
         contacts.size(),
         [&](std::size_t c) {
             return is_gone(moves.body_now, contacts.first_body[c]) ||
@@ -131,8 +131,8 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
             contacts.second_body[c] = now(moves.body_now, contacts.second_body[c]);
             contacts.collider[c] = now(moves.collider_now, contacts.collider[c]);
         });
-    AnyTable(contacts).erase(gone);
-    return gone;
+    AnyTable(contacts).erase(removed);
+    return removed;
 }
 
 }  // namespace skerry

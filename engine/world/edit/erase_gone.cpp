@@ -130,15 +130,15 @@ void erase_records(std::span<const Index> row_now, std::vector<Record>& records)
 
 /// Removes scripts together with their keyframes. A remaining script without keyframes has an empty range, which may
 /// start at a removed keyframe; row_without() allows this.
-void erase_scripts(std::span<const Range> gone, auto& table) {
+void erase_scripts(std::span<const Range> removed, auto& table) {
     std::vector<Range> keys, merged;
-    for (const Range& rows : gone)
+    for (const Range& rows : removed)
         for (auto row = static_cast<std::size_t>(rows.begin); row < static_cast<std::size_t>(rows.end); ++row)
             keys.push_back({table.script[row].key_begin, table.script[row].key_end});
     std::ranges::sort(keys, {}, &Range::begin);
     for (const Range& of_script : keys) append_gone(of_script, merged);
     table.keyframe.erase(merged);
-    AnyTable(table).erase(gone);
+    AnyTable(table).erase(removed);
     for (MotionScript& script : table.script) {
         script.key_begin = row_without(script.key_begin, merged);
         script.key_end = row_without(script.key_end, merged);
@@ -147,7 +147,7 @@ void erase_scripts(std::span<const Range> gone, auto& table) {
 
 void erase_attachments(const RowMoves& moves, Model& model) {
     AttachmentTable& table = model.attachments;
-    erase_scripted_rows(moves.attachments_gone, table);
+    erase_scripted_rows(moves.removed_attachments, table);
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
         const OfBodyTables<Index>& down = moves.down[static_cast<std::size_t>(table.body[a])];
         for (Index& node : rows_of(table.node, table.nodes[a])) lower(node, down.nodes);
@@ -157,7 +157,7 @@ void erase_attachments(const RowMoves& moves, Model& model) {
 }
 
 void erase_colliders(const RowMoves& moves, Model& model) {
-    erase_scripted_rows(moves.colliders_gone, model.colliders);
+    erase_scripted_rows(moves.removed_colliders, model.colliders);
     erase_records(moves.collider_now, model.collider_records);
     model.collider_map.rows_moved(moves.collider_now);
     for (Index& body : model.colliders.body)
@@ -173,12 +173,12 @@ void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& 
     for (Index& node : clusters.nodes.item)
         lower(node, moves.down[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
     for (Index& body : clusters.body) lower(body, moves.down[static_cast<std::size_t>(body)].bodies);
-    clusters.cluster_of.erase(moves.gone.nodes);
-    clusters.index_in_cluster.erase(moves.gone.nodes);
+    clusters.cluster_of.erase(moves.removed.nodes);
+    clusters.index_in_cluster.erase(moves.removed.nodes);
 }
 
 void erase_bodies(const RowMoves& moves, Model& model) {
-    const auto first = static_cast<std::size_t>(moves.gone.bodies.front().begin);
+    const auto first = static_cast<std::size_t>(moves.removed.bodies.front().begin);
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
         if (moves.body_now[b] == no_index && model.has_loads(b)) --model.loaded_bodies;
     truncate_patches(model.bodies.blocks[first].begin, model.bodies.nodes[first].begin, model.patches);
@@ -186,16 +186,16 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     model.known_elements.clear();
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
         if (moves.body_now[b] != no_index) renumber_rows_of_body(model, b, rows_of_body(model, b), moves.down[b]);
-    const OfBodyTables<std::vector<Range>>& gone = moves.gone;
+    const OfBodyTables<std::vector<Range>>& removed = moves.removed;
     constexpr auto list_of = OfBodyTables<std::vector<Range>>::members();
     const std::vector<std::vector<AnyColumn>> tables = columns_by_body_table(model);
     for (std::size_t table = 0; table < tables.size(); ++table)
-        for (const AnyColumn& column : tables[table]) column.erase(gone.*list_of[table]);
-    for (auto rows = gone.rigid.rbegin(); rows != gone.rigid.rend(); ++rows)
+        for (const AnyColumn& column : tables[table]) column.erase(removed.*list_of[table]);
+    for (auto rows = removed.rigid.rbegin(); rows != removed.rigid.rend(); ++rows)
         model.stiff_bodies.erase(model.stiff_bodies.begin() + rows->begin, model.stiff_bodies.begin() + rows->end);
     erase_records(moves.body_now, model.body_records);
-    model.body_mass.erase(gone.bodies);
-    model.watch.erase(gone.bodies, gone.nodes);
+    model.body_mass.erase(removed.bodies);
+    model.watch.erase(removed.bodies, removed.nodes);
     model.body_map.rows_moved(moves.body_now);
 }
 
@@ -206,18 +206,18 @@ void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Ra
     RowsOfBody(model, body, rows, down).renumber();
 }
 
-void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table) {
-    erase_scripts(gone, table);
+void erase_scripted_rows(std::span<const Range> removed, ColliderTable& table) {
+    erase_scripts(removed, table);
 }
 
-void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
+void erase_scripted_rows(std::span<const Range> removed, AttachmentTable& table) {
     std::vector<Range> nodes;
-    for (const Range& rows : gone)
+    for (const Range& rows : removed)
         for (auto row = static_cast<std::size_t>(rows.begin); row < static_cast<std::size_t>(rows.end); ++row)
             append_gone(table.nodes[row], nodes);
     table.node.erase(nodes);
     table.anchor.erase(nodes);
-    erase_scripts(gone, table);
+    erase_scripts(removed, table);
     Index end = 0;  // the node lists of the rows follow each other without gaps
     for (Range& of_row : table.nodes) {
         of_row = {end, end + of_row.size()};
@@ -226,11 +226,11 @@ void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
 }
 
 void erase_gone(const RowMoves& moves, Model& model) {
-    if (!moves.gone.bodies.empty()) erase_attachments(moves, model);
-    if (!moves.gone.bodies.empty()) erase_bodies(moves, model);
-    if (!moves.gone.bodies.empty()) renumber_joining_rows(ColumnRole::body, moves.body_now, model);
-    if (!moves.colliders_gone.empty()) renumber_joining_rows(ColumnRole::collider, moves.collider_now, model);
-    if (!moves.colliders_gone.empty() || !moves.gone.bodies.empty()) erase_colliders(moves, model);
+    if (!moves.removed.bodies.empty()) erase_attachments(moves, model);
+    if (!moves.removed.bodies.empty()) erase_bodies(moves, model);
+    if (!moves.removed.bodies.empty()) renumber_joining_rows(ColumnRole::body, moves.body_now, model);
+    if (!moves.removed_colliders.empty()) renumber_joining_rows(ColumnRole::collider, moves.collider_now, model);
+    if (!moves.removed_colliders.empty() || !moves.removed.bodies.empty()) erase_colliders(moves, model);
 }
 
 }  // namespace skerry

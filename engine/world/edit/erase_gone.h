@@ -26,8 +26,8 @@ void erase_gone(const RowMoves& moves, Model& model);
 /// each table, the number that is subtracted from each reference to a row of this table.
 void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
                            const OfBodyTables<Index>& down);
-/// Removes scripted colliders or attachments together with their keyframes. `gone`: removed rows in ascending order.
-void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table);
-void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table);
+/// Removes scripted colliders or attachments together with their keyframes. `removed`: removed rows in ascending order.
+void erase_scripted_rows(std::span<const Range> removed, ColliderTable& table);
+void erase_scripted_rows(std::span<const Range> removed, AttachmentTable& table);
 
 }  // namespace skerry

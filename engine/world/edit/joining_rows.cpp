@@ -18,11 +18,11 @@ bool joins_bodies(AnyTable table) {
 
 void erase_rows_joining(ColumnRole role, Index object, Model& model) {
     model.for_each_joining([&](const char*, auto& table, auto& map) {
-        std::vector<bool> gone(table.slot.size(), false);
+        std::vector<bool> removed(table.slot.size(), false);
         for_each_joined(table, role, [&](std::size_t row, Index joined) {
-            if (joined == object) gone[row] = true;
+            if (joined == object) removed[row] = true;
         });
-        wake_and_erase_rows(gone, table, map, model);
+        wake_and_erase_rows(removed, table, map, model);
     });
 }
 

@@ -57,16 +57,16 @@ inline std::vector<RowLists> lists_of(AttachmentTable& t) {
     return {{&t.nodes, {t.node, t.anchor}}};
 }
 
-/// Removes rows of a table and their handles. `gone`: true for each row to be removed.
+/// Removes rows of a table and their handles. `removed`: true for each row to be removed.
 template <class Table, class Handle>
-void erase_joining_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map) {
+void erase_joining_rows(const std::vector<bool>& removed, Table& table, NamedHandles<Handle>& map) {
     std::vector<Index> row_now;
     std::vector<Range> ranges;
     Index next = 0;
-    for (std::size_t row = 0; row < gone.size(); ++row) {
+    for (std::size_t row = 0; row < removed.size(); ++row) {
         const auto index = static_cast<Index>(row);
-        row_now.push_back(gone[row] ? no_index : next++);
-        if (!gone[row]) continue;
+        row_now.push_back(removed[row] ? no_index : next++);
+        if (!removed[row]) continue;
         append_gone(Range{index, index + 1}, ranges);
         const Handle handle = map.handle_of_slot(table.slot[row]);
         map.names.erase(handle);
@@ -99,11 +99,11 @@ void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
 
 /// Like erase_joining_rows(), but first wakes the bodies that the removed rows name.
 template <class Table, class Handle>
-void wake_and_erase_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map, Model& model) {
+void wake_and_erase_rows(const std::vector<bool>& removed, Table& table, NamedHandles<Handle>& map, Model& model) {
     for_each_joined(table, ColumnRole::body, [&](std::size_t row, Index body) {
-        if (gone[row]) model.wake(static_cast<std::size_t>(body));
+        if (removed[row]) model.wake(static_cast<std::size_t>(body));
     });
-    erase_joining_rows(gone, table, map);
+    erase_joining_rows(removed, table, map);
 }
 
 /// Removes all rows that name an object, for example the joints and loads of a body. Must be called before the object

@@ -18,9 +18,9 @@ void ObjectView<HandleType>::remove(HandleType object) {
     const auto row = static_cast<std::size_t>(model.row(object, "remove"));
     if constexpr (requires { prepare_removal(*world_, object); }) prepare_removal(*world_, object);
     auto& table = ObjectsOf<HandleType>::table(model);
-    std::vector<bool> gone(table.slot.size(), false);
-    gone[row] = true;
-    wake_and_erase_rows(gone, table, ObjectsOf<HandleType>::handles(model), model);
+    std::vector<bool> removed(table.slot.size(), false);
+    removed[row] = true;
+    wake_and_erase_rows(removed, table, ObjectsOf<HandleType>::handles(model), model);
     model.links_open = true;
     note_forces(model);
     world.record.balance.close();  // the energy stored in a spring, or in the gas of a cavity, vanishes with it

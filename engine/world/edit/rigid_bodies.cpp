@@ -68,12 +68,12 @@ void note_strain(Model& model, std::size_t body) {
 void give_nodes_velocity(Model& model, std::size_t body) {
     const RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
+    const Vec3 velocity = table.momentum[r] / table.mass[r], angular_velocity = spin(table, r);
     const Deformation deformation(model, body);
     const Mat3 from_mesh = frame_of_mesh(table, r);
     const Range nodes = model.bodies.nodes[body];
     for (Index n = nodes.begin; n < nodes.end; ++n) {
-        model.nodes.velocity[n] = velocity + turn.cross(model.nodes.position[n] - table.center[r]);
+        model.nodes.velocity[n] = velocity + angular_velocity.cross(model.nodes.position[n] - table.center[r]);
         if (deformation.any())
             model.nodes.velocity[n] += from_mesh * deformation.velocity[static_cast<std::size_t>(n - nodes.begin)];
     }
@@ -125,10 +125,10 @@ void append_rigid_body(Model& model, Index row, const NewBody& body) {
 void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new) {
     const RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    const GivenMass given = model.body_records[body].given_mass;
-    if (given == GivenMass::none) return;
+    const GivenMass given_mass = model.body_records[body].given_mass;
+    if (given_mass == GivenMass::none) return;
     as_new.mass = table.mass[r];
-    if (given == GivenMass::mass) return;
+    if (given_mass == GivenMass::mass) return;
     as_new.center_of_mass = table.rest_center[r];
     as_new.inertia = table.axes[r] * table.moments[r].asDiagonal() * table.axes[r].transpose();
 }
@@ -136,20 +136,20 @@ void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new) {
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
+    const Vec3 velocity = table.momentum[r] / table.mass[r], angular_velocity = spin(table, r);
     const Mat3 from_mesh = frame_of_mesh(table, r);
     write_masses(mass_properties(model, as_new), r, table);
     table.rotation[r] = from_mesh * table.axes[r];
-    set_motion(table, r, velocity, turn);
+    set_motion(table, r, velocity, angular_velocity);
     if (model.shares_mass(body)) share_mass(model, body);
 }
 
 void follow_weight(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
+    const Vec3 velocity = table.momentum[r] / table.mass[r], angular_velocity = spin(table, r);
     note_strain(model, body);
-    set_motion(table, r, velocity, turn);
+    set_motion(table, r, velocity, angular_velocity);
 }
 
 namespace {
@@ -175,10 +175,10 @@ NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const 
     Mat3 overlap = Mat3::Zero();
     for (std::size_t n = 0; n < position.size(); ++n)
         overlap += weight(n) * (position[n] - frame.center) * (rest_position[n] - frame.rest_center).transpose();
-    const Eigen::JacobiSVD<Mat3> turn(overlap, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 u = turn.matrixU();
-    if ((u * turn.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-    frame.rotation = u * turn.matrixV().transpose();
+    const Eigen::JacobiSVD<Mat3> svd(overlap, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 u = svd.matrixU();
+    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+    frame.rotation = u * svd.matrixV().transpose();
     return frame;
 }
 
@@ -194,16 +194,16 @@ NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes) {
     if (nodes.empty()) return false;
     const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[body]);
-    const auto place = [&](Index node) -> const Vec3& { return rest[static_cast<std::size_t>(node)]; };
-    const Vec3 first = place(nodes.front());
+    const auto rest_position = [&](Index node) -> const Vec3& { return rest[static_cast<std::size_t>(node)]; };
+    const Vec3 first = rest_position(nodes.front());
     Vec3 along = Vec3::Zero();
     for (const Index node : nodes)
-        if ((place(node) - first).squaredNorm() > along.squaredNorm()) along = place(node) - first;
+        if ((rest_position(node) - first).squaredNorm() > along.squaredNorm()) along = rest_position(node) - first;
     // Nodes count as collinear if their distance from the line between the first node and the node farthest from it is
     // at most this fraction of the length of the line.
     constexpr Real thin = 1e-6;
     for (const Index node : nodes)
-        if (along.cross(place(node) - first).norm() > thin * along.squaredNorm()) return true;
+        if (along.cross(rest_position(node) - first).norm() > thin * along.squaredNorm()) return true;
     return false;
 }
 
@@ -376,15 +376,16 @@ void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocit
     const Mat3 from_mesh = frame_of_mesh(table, r);
     const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
     stiff.set_shape({deformation.displacement, stiff.nodes()});
-    std::vector<Vec3> by_place(stiff.size());
-    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.order_index(n)); };
-    for (std::size_t n = 0; n < by_place.size(); ++n)
-        by_place[place(n)] = from_mesh.transpose() * (model.nodes.velocity[first + n] - velocity);
-    table.angular_momentum[r] = from_mesh * stiff.shape().angular_momentum(by_place);
-    const Vec3 turn = from_mesh.transpose() * spin(table, r);
-    for (std::size_t k = 0; k < by_place.size(); ++k) by_place[k] -= turn.cross(stiff.shape().position[k]);
-    stiff.remove_momenta(by_place);
-    for (std::size_t n = 0; n < by_place.size(); ++n) deformation.velocity[n] = by_place[place(n)];
+    std::vector<Vec3> by_stiff_row(stiff.size());
+    const auto stiff_row = [&](std::size_t n) { return static_cast<std::size_t>(stiff.order_index(n)); };
+    for (std::size_t n = 0; n < by_stiff_row.size(); ++n)
+        by_stiff_row[stiff_row(n)] = from_mesh.transpose() * (model.nodes.velocity[first + n] - velocity);
+    table.angular_momentum[r] = from_mesh * stiff.shape().angular_momentum(by_stiff_row);
+    const Vec3 angular_velocity = from_mesh.transpose() * spin(table, r);
+    for (std::size_t k = 0; k < by_stiff_row.size(); ++k)
+        by_stiff_row[k] -= angular_velocity.cross(stiff.shape().position[k]);
+    stiff.remove_momenta(by_stiff_row);
+    for (std::size_t n = 0; n < by_stiff_row.size(); ++n) deformation.velocity[n] = by_stiff_row[stiff_row(n)];
     give_nodes_velocity(model, body);
 }
 
@@ -408,9 +409,9 @@ void follow_node_velocities(Model& model, std::size_t body) {
     const std::size_t r = rigid_row(model, body);
     const Vec3 middle = middle_of_nodes(model, body);
     const NodeMotion motion = motion_of_nodes(model, body, middle);
-    const Vec3 turn = motion.inertia.inverse() * motion.angular_momentum,
-               velocity = motion.momentum / table.mass[r] + turn.cross(table.center[r] - middle);
-    set_motion(table, r, velocity, turn);
+    const Vec3 angular_velocity = motion.inertia.inverse() * motion.angular_momentum,
+               velocity = motion.momentum / table.mass[r] + angular_velocity.cross(table.center[r] - middle);
+    set_motion(table, r, velocity, angular_velocity);
     const Deformation deformation(model, body);
     if (deformation.any()) {
         note_strain(model, body);
@@ -420,13 +421,14 @@ void follow_node_velocities(Model& model, std::size_t body) {
         }
         // note_strain() may have changed the moments of inertia to those of the undeformed body, so the angular
         // momentum is computed again.
-        set_motion(table, r, velocity, turn);
+        set_motion(table, r, velocity, angular_velocity);
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
         const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
         for (std::size_t n = 0; n < deformation.velocity.size(); ++n)
-            deformation.velocity[n] = to_mesh * (model.nodes.velocity[first + n] - velocity -
-                                                 turn.cross(model.nodes.position[first + n] - table.center[r]));
+            deformation.velocity[n] =
+                to_mesh * (model.nodes.velocity[first + n] - velocity -
+                           angular_velocity.cross(model.nodes.position[first + n] - table.center[r]));
         model.stiff_bodies[r].remove_rigid_motion(deformation.velocity);
     }
     give_nodes_velocity(model, body);
@@ -461,16 +463,16 @@ std::vector<Vec3> elastic_forces(const Model& model, std::size_t body) {
     const std::size_t r = rigid_row(model, body);
     const StiffBody& stiff = model.stiff_bodies[r];
     const std::span<const Vec3> displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]);
-    std::vector<Vec3> by_place(displacement.size()), force(displacement.size());
-    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.order_index(n)); };
-    for (std::size_t n = 0; n < displacement.size(); ++n) by_place[place(n)] = displacement[n];
+    std::vector<Vec3> by_stiff_row(displacement.size()), force(displacement.size());
+    const auto stiff_row = [&](std::size_t n) { return static_cast<std::size_t>(stiff.order_index(n)); };
+    for (std::size_t n = 0; n < displacement.size(); ++n) by_stiff_row[stiff_row(n)] = displacement[n];
     if (model.rigid_bodies.large[r])
-        stiff.elements().forces(by_place, force);
+        stiff.elements().forces(by_stiff_row, force);
     else
-        stiff.elastic_forces(by_place, force);
+        stiff.elastic_forces(by_stiff_row, force);
     std::vector<Vec3> by_node(displacement.size());
     const Mat3 from_mesh = frame_of_mesh(model.rigid_bodies, r);
-    for (std::size_t n = 0; n < by_node.size(); ++n) by_node[n] = -(from_mesh * force[place(n)]);
+    for (std::size_t n = 0; n < by_node.size(); ++n) by_node[n] = -(from_mesh * force[stiff_row(n)]);
     return by_node;
 }
 

@@ -8,14 +8,14 @@ bool is_marked(std::span<const std::uint8_t> marks, std::size_t row) {
     return row < marks.size() && marks[row] != 0;
 }
 
-/// Numbers the remaining rows of a table. `gone`: receives the removed rows. `row_now`: receives the new number of each
-/// row, or no_index for a removed row.
-void number_rows(std::size_t count, auto&& is_gone, std::vector<Range>& gone, std::vector<Index>& row_now) {
+/// Numbers the remaining rows of a table. `removed`: receives the removed rows. `row_now`: receives the new number of
+/// each row, or no_index for a removed row.
+void number_rows(std::size_t count, auto&& is_removed, std::vector<Range>& removed, std::vector<Index>& row_now) {
     Index next = 0;
     for (std::size_t row = 0; row < count; ++row) {
         const auto index = static_cast<Index>(row);
-        const bool goes = is_gone(row);
-        if (goes) append_gone(Range{index, index + 1}, gone);
+        const bool goes = is_removed(row);
+        if (goes) append_gone(Range{index, index + 1}, removed);
         row_now.push_back(goes ? no_index : next++);
     }
 }
@@ -62,26 +62,26 @@ OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body) {
 RowMoves row_moves(const Model& model, std::span<const std::uint8_t> bodies, std::span<const std::uint8_t> colliders) {
     RowMoves moves;
     const auto body_goes = [&](std::size_t row) { return is_marked(bodies, row); };
-    number_rows(model.bodies.slot.size(), body_goes, moves.gone.bodies, moves.body_now);
+    number_rows(model.bodies.slot.size(), body_goes, moves.removed.bodies, moves.body_now);
     number_rows(
-        model.colliders.slot.size(), [&](std::size_t row) { return is_marked(colliders, row); }, moves.colliders_gone,
-        moves.collider_now);
+        model.colliders.slot.size(), [&](std::size_t row) { return is_marked(colliders, row); },
+        moves.removed_colliders, moves.collider_now);
     number_rows(
         model.attachments.slot.size(),
         [&](std::size_t row) { return body_goes(static_cast<std::size_t>(model.attachments.body[row])); },
-        moves.attachments_gone, moves.attachment_now);
+        moves.removed_attachments, moves.attachment_now);
 
     constexpr auto range_of = OfBodyTables<Range>::members();
     constexpr auto index_of = OfBodyTables<Index>::members();
     constexpr auto list_of = OfBodyTables<std::vector<Range>>::members();
-    moves.gone.bodies.clear();
+    moves.removed.bodies.clear();
     OfBodyTables<Index> down;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         moves.down.push_back(down);
         if (!body_goes(b)) continue;
         const OfBodyTables<Range> rows = rows_of_body(model, b);
         for (std::size_t table = 0; table < range_of.size(); ++table) {
-            append_gone(rows.*range_of[table], moves.gone.*list_of[table]);
+            append_gone(rows.*range_of[table], moves.removed.*list_of[table]);
             down.*index_of[table] += (rows.*range_of[table]).size();
         }
     }

@@ -34,16 +34,16 @@ std::vector<std::vector<AnyColumn>> columns_by_body_table(Model& model);
 OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body);
 
 struct RowMoves {
-    OfBodyTables<std::vector<Range>> gone;  // removed rows of each table, ascending
+    OfBodyTables<std::vector<Range>> removed;  // removed rows of each table, ascending
     // for each old body row: number of rows by which the body's rows in each table move towards the start
     std::vector<OfBodyTables<Index>> down;
-    std::vector<Index> body_now;          // for each old body row: its new row; no_index: removed
-    std::vector<Range> colliders_gone;    // ascending
-    std::vector<Index> collider_now;      // for each old collider row: its new row; no_index: removed
-    std::vector<Range> attachments_gone;  // rows of the attachments of removed bodies
-    std::vector<Index> attachment_now;    // for each old attachment row: its new row; no_index: removed
+    std::vector<Index> body_now;             // for each old body row: its new row; no_index: removed
+    std::vector<Range> removed_colliders;    // ascending
+    std::vector<Index> collider_now;         // for each old collider row: its new row; no_index: removed
+    std::vector<Range> removed_attachments;  // rows of the attachments of removed bodies
+    std::vector<Index> attachment_now;       // for each old attachment row: its new row; no_index: removed
 
-    bool any() const { return !gone.bodies.empty() || !colliders_gone.empty(); }
+    bool any() const { return !removed.bodies.empty() || !removed_colliders.empty(); }
 };
 
 /// Plans the removal of the rows with a nonzero mark. `bodies`, `colliders`: marks by row; rows beyond the last mark

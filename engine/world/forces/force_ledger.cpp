@@ -76,8 +76,8 @@ bool is_zero(const ContactSums& sums) {
 
 }  // namespace
 
-void ForceLedger::Peak::end_step(Real kick) {
-    largest_force = std::max(largest_force, impulse.norm() / kick);
+void ForceLedger::Peak::end_step(Real seconds) {
+    largest_force = std::max(largest_force, impulse.norm() / seconds);
     contacts = step_contacts;
     most_contacts = std::max(most_contacts, contacts);
     impulse.setZero();
@@ -119,7 +119,7 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
     motion.assign(nodes.position.size(), Vec3::Zero());
-    std::vector<std::uint8_t> taken(nodes.position.size(), 0);
+    std::vector<std::uint8_t> listed(nodes.position.size(), 0);
     // Attachments are visited in reverse order, as in measure_reactions. If several attachments hold a node, the node
     // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
@@ -132,8 +132,8 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
         }
         for (const Index n : rows_of(model.attachments.node, model.attachments.nodes[a])) {
             const auto row = static_cast<std::size_t>(n);
-            if (!taken[row]) held.push_back(row);
-            taken[row] = 1;
+            if (!listed[row]) held.push_back(row);
+            listed[row] = 1;
         }
         AttachmentRow& row = attachments_[model.attachments.slot[a]];
         row.still_seconds = 1;
@@ -193,22 +193,22 @@ void ForceLedger::fit(const Model& model) {
 }
 
 Real ForceLedger::seconds_on(const Model& model, Index row) const {
-    return row != no_index && is_implicit(model, static_cast<std::size_t>(row)) ? call_.whole : call_.kick;
+    return row != no_index && is_implicit(model, static_cast<std::size_t>(row)) ? call_.whole_step : call_.kick;
 }
 
 Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
-    return is_implicit(model, key) ? call_.whole : call_.kick;
+    return is_implicit(model, key) ? call_.whole_step : call_.kick;
 }
 
 bool ForceLedger::shows_contacts() const {
     // A step may leave gaps open that are a small part of the distance travelled in it. In a call much shorter than
     // that step, bodies may not close these gaps, and contact forces would be missing.
     constexpr Real shortest_share = 0.01;
-    return call_.whole > 0 && call_.whole >= shortest_share * step_before_;
+    return call_.whole_step > 0 && call_.whole_step >= shortest_share * step_before_;
 }
 
 bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const {
-    if (!(call_.whole > 0)) return false;
+    if (!(call_.whole_step > 0)) return false;
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
     if (rests(model, static_cast<Index>(body))) return true;
     // The reaction on a rigid body is its change of momentum minus the impulses of weight and contacts, so contact
@@ -219,7 +219,8 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
     Real held = 0;   // mass of the held nodes [kg]
     Real noise = 0;  // rounding error of the momentum [N s]
     const auto add_position = [&](std::size_t n, Real mass) {
-        if (!model.nodes.velocity[n].isZero(0)) noise += mass * digits * model.nodes.position[n].norm() / step_.whole;
+        if (!model.nodes.velocity[n].isZero(0))
+            noise += mass * digits * model.nodes.position[n].norm() / step_.whole_step;
     };
     for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment])) {
         const auto n = static_cast<std::size_t>(node);
@@ -235,7 +236,7 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
     // Accepted rounding error of a reaction: small_share times the force, plus the force that gives the held nodes this
     // small_acceleration [m/s^2].
     constexpr Real small_share = 0.01, small_acceleration = 1e-3;
-    return noise <= small_share * impulse.norm() + small_acceleration * held * call_.whole;
+    return noise <= small_share * impulse.norm() + small_acceleration * held * call_.whole_step;
 }
 
 void ForceLedger::begin_call(const Model& model, Real step_before, StepScratch& scratch) {
@@ -259,9 +260,9 @@ void ForceLedger::begin_call(const Model& model, Real step_before, StepScratch& 
 }
 
 ForceLedger::PairRow& ForceLedger::pair(const PairKey& key) {
-    const auto place = std::ranges::lower_bound(pairs_, key, {}, &PairRow::key);
-    if (place != pairs_.end() && place->key == key) return *place;
-    return *pairs_.insert(place, PairRow{.key = key});
+    const auto found = std::ranges::lower_bound(pairs_, key, {}, &PairRow::key);
+    if (found != pairs_.end() && found->key == key) return *found;
+    return *pairs_.insert(found, PairRow{.key = key});
 }
 
 void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index contacts) {
@@ -278,7 +279,7 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
-    const Real seconds = is_implicit(model, row.key) ? step_.whole : step_.kick;
+    const Real seconds = is_implicit(model, row.key) ? step_.whole_step : step_.kick;
     if (rested[first] && rested[second]) {
         if (!row.touched && row.still_seconds > 0) {
             const ContactSums held = (seconds / row.still_seconds) * row.still;
@@ -301,9 +302,10 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> re
     for (const PairSums& of_step : scratch.forces.pairs) {
         PairRow& row = pair(key_of(model, of_step.partners));
         row.sums += of_step.sums;
-        const ContactPartners& of = of_step.partners;
-        const bool both_rested = rested[static_cast<std::size_t>(of.first)] != 0 &&
-                                 (of.second == no_index || rested[static_cast<std::size_t>(of.second)] != 0);
+        const ContactPartners& partners = of_step.partners;
+        const bool both_rested =
+            rested[static_cast<std::size_t>(partners.first)] != 0 &&
+            (partners.second == no_index || rested[static_cast<std::size_t>(partners.second)] != 0);
         if (!both_rested) row.still += of_step.sums;
         row.peak.add(of_step.sums.impulse, of_step.contacts);
         row.touched = true;
@@ -311,12 +313,12 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> re
     }
     for (PairRow& row : pairs_) {
         end_pair_step(model, rested, row);
-        row.peak.end_step(is_implicit(model, row.key) ? step_.whole : step_.kick);
+        row.peak.end_step(is_implicit(model, row.key) ? step_.whole_step : step_.kick);
         row.touched = false;
     }
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.kind[b] == BodyKind::deformable)
-            bodies_[model.bodies.slot[b]].end_step(is_implicit(model, b) ? step_.whole : step_.kick);
+            bodies_[model.bodies.slot[b]].end_step(is_implicit(model, b) ? step_.whole_step : step_.kick);
     for (Peak& peak : colliders_) peak.end_step(step_.kick);
 }
 
@@ -325,7 +327,7 @@ void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t
         if (model.attachments.slot[a] == no_slot) continue;
         AttachmentRow& row = attachments_[model.attachments.slot[a]];
         const auto body = static_cast<std::size_t>(model.attachments.body[a]);
-        const Real seconds = is_implicit(model, body) ? step_.whole : step_.kick;
+        const Real seconds = is_implicit(model, body) ? step_.whole_step : step_.kick;
         ImpulseAndMoment of_step = scratch.forces.reactions[a];
         if (rested[body]) {
             const Real part = row.still_seconds > 0 ? seconds / row.still_seconds : 0;
@@ -344,8 +346,8 @@ void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t
 }
 
 void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch) {
-    step_ = {scratch.parameters.h, scratch.parameters.kick};
-    call_.whole += step_.whole;
+    step_ = {scratch.parameters.h, scratch.parameters.kick_time};
+    call_.whole_step += step_.whole_step;
     call_.kick += step_.kick;
     add_pairs(model, rested, scratch);
     add_reactions(model, rested, scratch);

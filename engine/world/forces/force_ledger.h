@@ -43,7 +43,7 @@ public:
             step_contacts += of_contacts;
         }
         /// Ends a step. `kick`: time for which forces act on velocities in the step [s].
-        void end_step(Real kick);
+        void end_step(Real seconds);
         void begin_call() { *this = {}; }
     };
     struct PairRow {
@@ -113,10 +113,10 @@ private:
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // [m]
     // Duration of forces [s]: the whole step for implicit bodies, the kick for all other objects.
-    struct Seconds {
-        Real whole = 0, kick = 0;
+    struct ForceTimes {
+        Real whole_step = 0, kick = 0;
     };
-    Seconds step_, call_;
+    ForceTimes step_, call_;
     Real step_before_ = 0;        // length of the step before the call; 0 if there was none [s]
     std::vector<PairRow> pairs_;  // sorted by key
     // indexed by handle slot

@@ -33,21 +33,21 @@ void join_records(WorldState& world) {
     RunCounters& counters = world.record.counters;
     Balance& balance = world.record.balance;
     CrossingTable& crossings = world.cache.crossings;
-    const Balance own = std::exchange(share.balance, {});
-    balance.steps += own.steps;
-    const JoinedSums mine{std::exchange(share.dissipated, 0),
-                          std::exchange(share.plastic_work, 0),
-                          own.work,
-                          own.energy_flow,
-                          own.momentum_flow,
-                          own.impulse,
-                          crossings.tested - share.tested,
-                          crossings.hits - share.hits,
-                          crossings.let_through - share.let_through};
+    const Balance own_balance = std::exchange(share.balance, {});
+    balance.steps += own_balance.steps;
+    const JoinedSums own_sums{std::exchange(share.dissipated, 0),
+                              std::exchange(share.plastic_work, 0),
+                              own_balance.work,
+                              own_balance.energy_flow,
+                              own_balance.momentum_flow,
+                              own_balance.impulse,
+                              crossings.tested - share.tested,
+                              crossings.hits - share.hits,
+                              crossings.let_through - share.let_through};
     crossings.tested = share.tested;
     crossings.hits = share.hits;
     crossings.let_through = share.let_through;
-    for_each_gathered<JoinedSums>(*world.ranks.ranks, std::span(&mine, 1), [&](const JoinedSums& of_rank) {
+    for_each_gathered<JoinedSums>(*world.ranks.ranks, std::span(&own_sums, 1), [&](const JoinedSums& of_rank) {
         counters.dissipated += of_rank.dissipated;
         counters.plastic_work += of_rank.plastic_work;
         balance.work += of_rank.work;
@@ -66,9 +66,9 @@ void join_records(WorldState& world) {
 void join_reports(WorldState& world, StepReport& report) {
     if (!world.ranks.on()) return;
     join_records(world);
-    const JoinedReport mine{report.held_penetration, world.record.held, report.crossed};
+    const JoinedReport own_report{report.held_penetration, world.record.held, report.crossed};
     report.crossed = 0;
-    for_each_gathered<JoinedReport>(*world.ranks.ranks, std::span(&mine, 1), [&](const JoinedReport& of_rank) {
+    for_each_gathered<JoinedReport>(*world.ranks.ranks, std::span(&own_report, 1), [&](const JoinedReport& of_rank) {
         report.held_penetration = std::max(report.held_penetration, of_rank.held_penetration);
         report.crossed += of_rank.crossed;
         world.record.held.take(of_rank.held);

@@ -88,7 +88,7 @@ void send_clustered_bodies(WorldState& world) {
     if (!world.model.of_ranks.clusters_grew) return;
     RankState& ranks = world.ranks;
     for (std::size_t b = 0; b < ranks.leads.size(); ++b)
-        if (ranks.leads[b] && !can_be_led(world.model, b)) ranks.stale.push_back(ranks.place[b]);
+        if (ranks.leads[b] && !can_be_led(world.model, b)) ranks.stale.push_back(ranks.world_row[b]);
     update_ghosts(world);
 }
 

@@ -3,13 +3,13 @@
 
 namespace skerry {
 
-NamedBody name_body(const WorldState& world, Index place) {
-    if (place == no_index) return {};
+NamedBody name_body(const WorldState& world, Index world_row) {
+    if (world_row == no_index) return {};
     const Model& model = world.model;
-    const Index row = world.ranks.row_of(place);
+    const Index row = world.ranks.row_of(world_row);
     if (row == no_index) {
         const WholeWorld& whole = world.ranks.whole;
-        return {whole.handle(model, place), whole.records[static_cast<std::size_t>(place)].name};
+        return {whole.handle(model, world_row), whole.records[static_cast<std::size_t>(world_row)].name};
     }
     const auto b = static_cast<std::size_t>(row);
     // Bodies that are not deformable are the meshes of mesh colliders. They have no body handle.
@@ -18,8 +18,8 @@ NamedBody name_body(const WorldState& world, Index place) {
             model.body_records[b].name};
 }
 
-Index place_of_stiffest(const WorldState& world, Index row) {
-    return row == no_index ? world.model.of_ranks.stiffest : world.ranks.place_of(row);
+Index world_row_of_stiffest(const WorldState& world, Index row) {
+    return row == no_index ? world.model.of_ranks.stiffest : world.ranks.world_row_of(row);
 }
 
 }  // namespace skerry

@@ -41,9 +41,9 @@ struct PredictionMail : RankMail {
 /// Entry of the message about a set of touching bodies that one rank has found. The message has an entry for each body
 /// of the set that several ranks hold.
 struct SetMember {
-    Index place;         // row of the body in the undivided world
-    Index set;           // row of the first body of the set on the rank that has found the set
-    Index must_stay_up;  // nonzero if a body of the set must stay awake
+    Index world_row;    // row of the body in the undivided world
+    Index set;          // row of the first body of the set on the rank that has found the set
+    Index stays_awake;  // nonzero if a body of the set must stay awake
 };
 
 /// Working memory of the stages that let bodies fall asleep or wake if several ranks hold them (sleep_over_ranks.cpp).
@@ -55,7 +55,7 @@ struct RankSleep {
     Column<SetMember> members;  // entries for the sets that this rank has found
     // A node of `joined` for each row of the undivided world, and for each set of the message that is being read;
     // no_index: none yet.
-    Column<Index> node_of_place, node_of_set;
+    Column<Index> node_of_body, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
     UnionFind joined;               // sets of all ranks, joined where they share a body
 };
@@ -63,7 +63,7 @@ struct RankSleep {
 /// A body that a rank must hold to solve a region.
 struct BodyRequest {
     int rank;
-    Index place;  // row of the body in the undivided world
+    Index world_row;  // row of the body in the undivided world
 };
 
 /// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).
@@ -91,11 +91,11 @@ struct LabelRounds {
     }
 };
 
-/// Row of BodyTable of the body that has the row `of_place` in the undivided world; no_index if this rank does not hold
-/// it. `place`: RankState::place.
-inline Index row_of_place(std::span<const Index> place, Index of_place) {
-    const auto at = std::ranges::lower_bound(place, of_place);
-    return at != place.end() && *at == of_place ? static_cast<Index>(at - place.begin()) : no_index;
+/// Row of BodyTable of the body that has the row `world_row` in the undivided world; no_index if this rank does not
+/// hold it. `world_rows`: RankState::world_row.
+inline Index local_row(std::span<const Index> world_rows, Index world_row) {
+    const auto at = std::ranges::lower_bound(world_rows, world_row);
+    return at != world_rows.end() && *at == world_row ? static_cast<Index>(at - world_rows.begin()) : no_index;
 }
 
 /// A rank *holds* the bodies that it owns and copies of bodies that other ranks own (*ghosts*). Each body has one
@@ -109,7 +109,7 @@ struct RankState {
     // For each row of BodyTable: the other ranks that hold the body, as indices in `peers`, ascending.
     std::vector<std::vector<int>> holders;
     // For each row of BodyTable: row of the body in the undivided world. These numbers ascend.
-    Column<Index> place;
+    Column<Index> world_row;
     // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
     // for ghosts. `moved`: upper bound of the path of the body since its holders were found [m].
     Column<Real> margin, moved;
@@ -129,16 +129,16 @@ struct RankState {
     Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    Column<Index> stale;  // rows (of the undivided world) of own bodies whose copies on other ranks are outdated
-    RankFindings mine;    // findings of this rank in this attempt at a step; complete when reduce_findings runs
-    RankFindings all;     // combined findings of all ranks in this attempt at a step
-    bool stops = false;   // true if a callback of this rank has asked to end the present call of World::advance
+    Column<Index> stale;        // rows (of the undivided world) of own bodies whose copies on other ranks are outdated
+    RankFindings own_findings;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
+    RankFindings all_findings;  // combined findings of all ranks in this attempt at a step
+    bool stops = false;         // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
-    Index place_of(Index row) const { return on() && row != no_index ? place[row] : row; }
+    Index world_row_of(Index row) const { return on() && row != no_index ? world_row[row] : row; }
     /// Row of BodyTable of the body in a row of the undivided world; no_index if this rank does not hold it.
-    Index row_of(Index of_place) const { return on() ? row_of_place(place, of_place) : of_place; }
+    Index row_of(Index row_in_world) const { return on() ? local_row(world_row, row_in_world) : row_in_world; }
 };
 
 }  // namespace skerry

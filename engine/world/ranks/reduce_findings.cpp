@@ -15,7 +15,7 @@ namespace {
 /// Columns that convert rows of this rank's tables to numbers that mean the same on all ranks, and columns that tell
 /// whether a body moves or may be too far from the origin in the next step.
 struct NamedBodies {
-    std::span<const Index> place;         // by body: its row in the undivided world
+    std::span<const Index> world_row;     // by body: its row in the undivided world
     std::span<const std::int32_t> owner;  // RankState
     std::span<const Range> nodes;         // BodyTable
     std::span<const Range> tetrahedron_blocks;
@@ -28,7 +28,7 @@ struct NamedBodies {
 
     static NamedBodies bind(const Binder& binder, const RankState& ranks, const BodyTable& body,
                             const NodeTable& node) {
-        return {.place = binder.read(ranks.place),
+        return {.world_row = binder.read(ranks.world_row),
                 .owner = binder.read(ranks.owner),
                 .nodes = binder.read(body.nodes),
                 .tetrahedron_blocks = binder.read(body.tetrahedron_blocks),
@@ -40,7 +40,7 @@ struct NamedBodies {
                 .rank = binder.value(ranks.rank)};
     }
     bool owns(Index body) const { return owner[body] == rank; }
-    Index place_of(Index body) const { return body == no_index ? RankFindings::nobody : place[body]; }
+    Index world_row_of(Index body) const { return body == no_index ? RankFindings::nobody : world_row[body]; }
     Index tetrahedron(Index body, Index lane) const {
         return lane == no_index ? no_index : lane - tetrahedron_blocks[body].begin * Index{element_lanes};
     }
@@ -83,77 +83,78 @@ struct StageFindings {
 
 /// Counts the inverted tetrahedra of bodies that this rank owns, and names the first one. The owners of ghosts count
 /// theirs.
-void note_inversions(const NamedBodies& bodies, const StageFindings& found, RankFindings& mine) {
-    mine.inverts_first = found.inversions.first;
+void note_inversions(const NamedBodies& bodies, const StageFindings& found, RankFindings& own_findings) {
+    own_findings.inverts_first = found.inversions.first;
     for (const InversionPart& part : found.inversion_parts) {
         if (part.count == 0 || !bodies.owns(part.body)) continue;
-        if (mine.inversions == 0) {
-            mine.inverted_body = bodies.place_of(part.body);
-            mine.inverted_tetrahedron = bodies.tetrahedron(part.body, part.tetrahedron);
+        if (own_findings.inversions == 0) {
+            own_findings.inverted_body = bodies.world_row_of(part.body);
+            own_findings.inverted_tetrahedron = bodies.tetrahedron(part.body, part.tetrahedron);
         }
-        mine.inversions += part.count;
+        own_findings.inversions += part.count;
     }
 }
 
-/// Copies the findings of the stages to `mine`, with numbers of bodies, nodes and tetrahedra that are valid on all
-/// ranks.
-void note_findings(const NamedBodies& bodies, const StageFindings& found, Real h, RankFindings& mine) {
+/// Copies the findings of the stages to `own_findings`, with numbers of bodies, nodes and tetrahedra that are valid on
+/// all ranks.
+void note_findings(const NamedBodies& bodies, const StageFindings& found, Real h, RankFindings& own_findings) {
     const StepVerdict& verdict = found.verdict;
-    mine.fault = verdict.fault;
-    mine.fault_body = bodies.place_of(verdict.body);
-    if (verdict.node != no_index) mine.fault_node = verdict.node - bodies.nodes[verdict.body].begin;
-    mine.fault_tetrahedron = bodies.tetrahedron(verdict.body, verdict.tetrahedron);
-    mine.fault_value = verdict.value;
-    mine.strain_rate = verdict.fastest.rate;
-    mine.strained_body = bodies.place_of(verdict.fastest.body);
-    mine.unsolved_body = bodies.place_of(found.strained.unsolved);
-    if (found.inversions.count > 0) note_inversions(bodies, found, mine);
-    mine.crossings = found.crossings;
-    mine.beyond_lists = found.table.beyond_lists;
-    for (std::size_t b = 0; b < bodies.place.size(); ++b) {
-        mine.moves |= bodies.moves(b);
-        mine.far |= bodies.may_be_far(b, h);
+    own_findings.fault = verdict.fault;
+    own_findings.fault_body = bodies.world_row_of(verdict.body);
+    if (verdict.node != no_index) own_findings.fault_node = verdict.node - bodies.nodes[verdict.body].begin;
+    own_findings.fault_tetrahedron = bodies.tetrahedron(verdict.body, verdict.tetrahedron);
+    own_findings.fault_value = verdict.value;
+    own_findings.strain_rate = verdict.fastest.rate;
+    own_findings.strained_body = bodies.world_row_of(verdict.fastest.body);
+    own_findings.unsolved_body = bodies.world_row_of(found.strained.unsolved);
+    if (found.inversions.count > 0) note_inversions(bodies, found, own_findings);
+    own_findings.crossings = found.crossings;
+    own_findings.beyond_lists = found.table.beyond_lists;
+    for (std::size_t b = 0; b < bodies.world_row.size(); ++b) {
+        own_findings.moves |= bodies.moves(b);
+        own_findings.far |= bodies.may_be_far(b, h);
     }
 }
 
-Index or_none(Index place) {
-    return place == RankFindings::nobody ? no_index : place;
+Index or_none(Index world_row) {
+    return world_row == RankFindings::nobody ? no_index : world_row;
 }
 
 /// Replaces the findings of the stages by those of all ranks. Bodies are named by their rows in the undivided world
 /// afterwards.
-void take_findings(const RankFindings& all, const StageFindings& found) {
-    found.verdict = {.fault = all.fault,
-                     .body = or_none(all.fault_body),
-                     .node = all.fault_node,
-                     .value = all.fault_value,
-                     .tetrahedron = all.fault_tetrahedron,
-                     .fastest = {all.strain_rate, or_none(all.strained_body)}};
-    if (all.fault == StepFault::not_finite) found.verdict.fastest = {};
-    found.strained.unsolved = or_none(all.unsolved_body);
+void take_findings(const RankFindings& all_findings, const StageFindings& found) {
+    found.verdict = {.fault = all_findings.fault,
+                     .body = or_none(all_findings.fault_body),
+                     .node = all_findings.fault_node,
+                     .value = all_findings.fault_value,
+                     .tetrahedron = all_findings.fault_tetrahedron,
+                     .fastest = {all_findings.strain_rate, or_none(all_findings.strained_body)}};
+    if (all_findings.fault == StepFault::not_finite) found.verdict.fastest = {};
+    found.strained.unsolved = or_none(all_findings.unsolved_body);
     // The findings must equal those of a process that simulates the whole world. That process tests for inversions and
     // crossings only if no body has a fault, and for crossings only if no candidate list is too short.
-    const bool tested = all.fault == StepFault::none;
-    found.inversions =
-        tested ? Inversions{all.inversions, or_none(all.inverted_body), all.inverted_tetrahedron, all.inverts_first}
-               : Inversions{};
-    found.table.beyond_lists = tested && all.beyond_lists;
-    found.crossings = tested ? all.crossings : 0;
-    if (!tested || all.beyond_lists || all.again_over_ranks()) found.table.found_count = 0;
+    const bool tested = all_findings.fault == StepFault::none;
+    found.inversions = tested ? Inversions{all_findings.inversions, or_none(all_findings.inverted_body),
+                                           all_findings.inverted_tetrahedron, all_findings.inverts_first}
+                              : Inversions{};
+    found.table.beyond_lists = tested && all_findings.beyond_lists;
+    found.crossings = tested ? all_findings.crossings : 0;
+    if (!tested || all_findings.beyond_lists || all_findings.again_over_ranks()) found.table.found_count = 0;
     // A nonzero number of crossings keeps the stages that commit the step from running. judge() does not read this
     // number, because it checks for again_over_ranks first.
-    if (all.again_over_ranks()) found.crossings = 1;
+    if (all_findings.again_over_ranks()) found.crossings = 1;
 }
 
 void reduce_findings(const NamedBodies& bodies, const ContactTable& contacts, const RegionTable& regions, const Real& h,
-                     const StageFindings& found, RankFindings& mine, RankFindings& all, RankChannel& channel) {
-    note_findings(bodies, found, h, mine);
-    mine.pushed = regions.pushed;
-    mine.counters = count_step(contacts, regions, found.measures, found.strained.newton, found.unstrained);
-    all = mine;
-    reduce<combine>(*channel.ranks, all);
-    all.counters.steps = 1;
-    take_findings(all, found);
+                     const StageFindings& found, RankFindings& own_findings, RankFindings& all_findings,
+                     RankChannel& channel) {
+    note_findings(bodies, found, h, own_findings);
+    own_findings.pushed = regions.pushed;
+    own_findings.counters = count_step(contacts, regions, found.measures, found.strained.newton, found.unstrained);
+    all_findings = own_findings;
+    reduce<combine>(*channel.ranks, all_findings);
+    all_findings.counters.steps = 1;
+    take_findings(all_findings, found);
 }
 
 }  // namespace
@@ -162,34 +163,36 @@ void list_reduction(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     g.stage("ranks/reduce_findings", reduce_findings, inputs<NamedBodies>(w.ranks, w.model.bodies, w.model.nodes),
             read(w.scratch.contacts), read(w.scratch.regions), value(w.scratch.parameters.h),
-            outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings), make(w.ranks.mine),
-            make(w.ranks.all), make(w.ranks.channel));
+            outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings),
+            make(w.ranks.own_findings), make(w.ranks.all_findings), make(w.ranks.channel));
 }
 
 void agree_to_start(WorldState& w) {
     RankState& ranks = w.ranks;
     if (!ranks.on()) return;
-    const bool possible = !ranks.all.moves || ranks.all.far;
-    bool& left_out = w.scratch.left_out;
+    const bool possible = !ranks.all_findings.moves || ranks.all_findings.far;
+    bool& skipped = w.scratch.skipped;
     StepVerdict& verdict = w.scratch.findings.verdict;
-    ranks.mine = {};
-    ranks.mine.stop = ranks.stops;
+    ranks.own_findings = {};
+    ranks.own_findings.stop = ranks.stops;
     if (!possible) {
-        left_out = false;
+        skipped = false;
         return;
     }
-    ranks.all = ranks.mine;
-    ranks.all.moves = !left_out;
+    ranks.all_findings = ranks.own_findings;
+    ranks.all_findings.moves = !skipped;
     if (verdict.fault != StepFault::none) {
-        ranks.all.fault = verdict.fault;
-        ranks.all.fault_body = ranks.place_of(verdict.body);
-        ranks.all.fault_value = verdict.value;
+        ranks.all_findings.fault = verdict.fault;
+        ranks.all_findings.fault_body = ranks.world_row_of(verdict.body);
+        ranks.all_findings.fault_value = verdict.value;
     }
-    reduce<combine>(*ranks.ranks, ranks.all);
-    left_out = !ranks.all.moves;
+    reduce<combine>(*ranks.ranks, ranks.all_findings);
+    skipped = !ranks.all_findings.moves;
     verdict = {};
-    if (!left_out && ranks.all.fault != StepFault::none)
-        verdict = {.fault = ranks.all.fault, .body = ranks.all.fault_body, .value = ranks.all.fault_value};
+    if (!skipped && ranks.all_findings.fault != StepFault::none)
+        verdict = {.fault = ranks.all_findings.fault,
+                   .body = ranks.all_findings.fault_body,
+                   .value = ranks.all_findings.fault_value};
 }
 
 }  // namespace skerry

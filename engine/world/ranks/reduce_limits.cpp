@@ -15,7 +15,7 @@ LimitsOfRanks limits_of_rank(const WorldState& world) {
     LimitsOfRanks limits;
     Index stiffest = no_index;
     limits.stable_step = stable_step(model, &stiffest);
-    limits.stiffest = stiffest == no_index ? RankFindings::nobody : world.ranks.place_of(stiffest);
+    limits.stiffest = stiffest == no_index ? RankFindings::nobody : world.ranks.world_row_of(stiffest);
     limits.strained = stiffest != no_index && is_strained(model, static_cast<std::size_t>(stiffest));
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         if (!world.ranks.owns(b) || model.bodies.blocks[b].size() == 0) continue;
@@ -27,7 +27,7 @@ LimitsOfRanks limits_of_rank(const WorldState& world) {
             limits.cluster_entries += model.clusters.nodes[c].size() * model.clusters.nodes[c].size();
     Index spinning = no_index;
     limits.spin = fastest_spin(model, &spinning);
-    limits.spinning = spinning == no_index ? RankFindings::nobody : world.ranks.place_of(spinning);
+    limits.spinning = spinning == no_index ? RankFindings::nobody : world.ranks.world_row_of(spinning);
     limits.has_frames = model.rigid_bodies.size() > 0;
     limits.has_implicit = model.implicit_nodes.size() > 0;
     limits.has_clusters = !model.clusters.empty();
@@ -73,8 +73,8 @@ void reduce_limits(WorldState& world) {
     model.of_ranks = {};
     LimitsOfRanks limits = limits_of_rank(world);
     reduce<combine_limits>(*world.ranks.ranks, limits);
-    for (Index* place : {&limits.stiffest, &limits.spinning})
-        if (*place == RankFindings::nobody) *place = no_index;
+    for (Index* body : {&limits.stiffest, &limits.spinning})
+        if (*body == RankFindings::nobody) *body = no_index;
     model.of_ranks = limits;
     // If any rank has force elements, all ranks add applied forces to all nodes, as an undivided world does. Code with
     // and without these forces rounds differently.
@@ -83,11 +83,11 @@ void reduce_limits(WorldState& world) {
     model.clusters_grew = false;
 }
 
-StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine) {
-    if (!world.ranks.on()) return mine;
-    StrainRate all{mine.rate, mine.body == no_index ? RankFindings::nobody : world.ranks.place_of(mine.body)};
-    reduce<take_faster>(*world.ranks.ranks, all);
-    return {all.rate, all.body == RankFindings::nobody ? no_index : all.body};
+StrainRate fastest_of_ranks(WorldState& world, const StrainRate& own) {
+    if (!world.ranks.on()) return own;
+    StrainRate fastest{own.rate, own.body == no_index ? RankFindings::nobody : world.ranks.world_row_of(own.body)};
+    reduce<take_faster>(*world.ranks.ranks, fastest);
+    return {fastest.rate, fastest.body == RankFindings::nobody ? no_index : fastest.body};
 }
 
 }  // namespace skerry

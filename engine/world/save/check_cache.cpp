@@ -26,11 +26,11 @@ void expect_step(const SavedFile& file, const std::string& path, Real step) {
 
 }  // namespace
 
-void check_clock(const SavedFile& file, const Clock& clock, Real kick) {
+void check_clock(const SavedFile& file, const Clock& clock, Real kick_time) {
     constexpr Real long_time = std::numeric_limits<Real>::max();
     expect_between(file, "clock/time", std::array{clock.time}, 0.0, long_time);
     expect_between(file, "clock/step_before", std::array{clock.step_before}, 0.0, long_time);
-    expect_between(file, "last_step/kick", std::array{kick}, 0.0, long_time);
+    expect_between(file, "last_step/kick", std::array{kick_time}, 0.0, long_time);
 }
 
 void check_cache(const SavedFile& file, const Model& model, ContactCache& cache) {

@@ -138,12 +138,13 @@ void expect_partition(const SavedFile& file, std::string_view path, std::span<co
 }
 
 void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
-                        std::size_t items, const std::string& of) {
+                        std::size_t items, const std::string& suffix) {
     expect_offsets(offset, items, [&](const std::string& found, const std::string& expected) {
-        file.complain(path, found + of, expected);
+        file.complain(path, found + suffix, expected);
     });
     if (offset.empty() || offset.back() != static_cast<Index>(items))
-        file.complain(path, (offset.empty() ? "no offset" : std::to_string(offset.back()) + " as the last offset") + of,
+        file.complain(path,
+                      (offset.empty() ? "no offset" : std::to_string(offset.back()) + " as the last offset") + suffix,
                       std::to_string(items) + ", the number of items");
 }
 

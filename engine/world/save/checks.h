@@ -31,8 +31,8 @@ void check_candidates(const SavedFile& file, const Model& model, const PairTable
 /// Checks the contacts of the last step.
 void check_contacts(const SavedFile& file, const Model& model, ContactTable& contacts);
 void check_resting_contacts(const SavedFile& file, const Model& model, RestingContactTable& resting);
-/// Checks the clock. `kick`: time for which forces acted in the last step [s].
-void check_clock(const SavedFile& file, const Clock& clock, Real kick);
+/// Checks the clock. `kick_time`: time for which forces acted in the last step [s].
+void check_clock(const SavedFile& file, const Clock& clock, Real kick_time);
 
 /// Returns text for messages, such as "5 at row 7".
 std::string at_row(const std::string& found, std::size_t row);
@@ -58,10 +58,10 @@ void expect_size(const SavedFile& file, std::string_view path, std::size_t found
 /// that contain lists may have any size.
 void expect_one_size(const SavedFile& file, const char* name, AnyTable table, std::size_t rows);
 
-/// Checks the offsets of a list of lists: there is at least one, and they ascend from 0 to `items`. `of`: text after
-/// the found value in the message.
+/// Checks the offsets of a list of lists: there is at least one, and they ascend from 0 to `items`. `suffix`: text
+/// after the found value in the message.
 void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
-                        std::size_t items, const std::string& of = {});
+                        std::size_t items, const std::string& suffix = {});
 
 /// Checks that every entry of `rows` is a row number of a table with `count` rows. If `none` is true, no_index is
 /// accepted too.

@@ -156,7 +156,7 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.column("run/self_crossings/self_contact", crossings.self_contact);
     archive.column("run/self_crossings/time", crossings.time);
     archive.column("run/self_crossings/places", crossings.places);
-    archive.value("last_step/kick", world.scratch.parameters.kick);
+    archive.value("last_step/kick", world.scratch.parameters.kick_time);
     // saved because users can read the contacts of the last step until the next step
     const AnyTable contacts(saved.contacts);
     for (const ColumnInfo& info : contacts.columns())

@@ -95,9 +95,9 @@ private:
     std::map<std::string, SavedArray> unread_;
 };
 
-/// Makes a world with the saved settings. `wanted` may replace the backend and the number of threads. A saved backend
-/// that this program lacks becomes `automatic`.
-World world_of(const SavedFile& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
+/// Makes a world with the saved settings. `load_settings` may replace the backend and the number of threads. A saved
+/// backend that this program lacks becomes `automatic`.
+World world_of(const SavedFile& file, const LoadSettings& load_settings, Reader& reader, SavedRows& saved) {
     Settings settings;
     Tuning tuning;
     list_settings(settings, tuning, saved, reader);
@@ -110,14 +110,14 @@ World world_of(const SavedFile& file, const LoadSettings& wanted, Reader& reader
     }
     const std::span<const Backend> here = available_backends();
     if (std::find(here.begin(), here.end(), settings.backend) == here.end()) settings.backend = Backend::automatic;
-    use(wanted, settings);
+    use(load_settings, settings);
     return tuned_world(settings, tuning);
 }
 
 /// Checks the saved data, and computes all data of the world that are not saved.
 void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     Model& model = world.model;
-    check_clock(file, world.clock, world.scratch.parameters.kick);
+    check_clock(file, world.clock, world.scratch.parameters.kick_time);
     check_model(file, model);
     put_records(saved, file, model);
     check_masses(file, model);

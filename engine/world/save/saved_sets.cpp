@@ -9,9 +9,10 @@
 namespace skerry {
 
 void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
-                 const char* of) {
+                 const char* object_kind) {
     if (found != expected)
-        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", the number of " + of);
+        file.complain(path, std::to_string(found) + " rows",
+                      std::to_string(expected) + ", the number of " + object_kind);
 }
 
 SavedSets sets_to_save(const Model& model) {

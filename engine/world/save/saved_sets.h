@@ -28,14 +28,15 @@ inline std::string text_of_row(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }
 
-/// Checks that a column has one row for each of the `expected` objects. `of`: name of the objects in the message.
+/// Checks that a column has one row for each of the `expected` objects. `object_kind`: name of the objects in the
+/// message.
 void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
-                 const char* of);
+                 const char* object_kind);
 /// Checks the offsets of a list of lists, and the number of its rows. Without rows, offsets may be missing.
 template <class T>
 void expect_ragged(const SavedFile& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
-                   const char* of) {
-    expect_rows(file, path, rows.size(), count, of);
+                   const char* object_kind) {
+    expect_rows(file, path, rows.size(), count, object_kind);
     if (!rows.offset.empty())
         expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
     else if (!rows.item.empty())

@@ -48,7 +48,7 @@ public:
             if (round == most_rounds)
                 refuse(found.front(), "the surrounding bodies and colliders leave no room to move them apart");
             for (const PairOverlap& each : found) {
-                require_way_out(each);
+                require_resolvable(each);
                 ask_for(each);
             }
             const std::vector<Vec3> before(search_.shifts().begin(), search_.shifts().end());
@@ -58,7 +58,7 @@ public:
             for (const PairOverlap& each : found) require_near(each);
             found.clear();
             for (const StartPair& pair : search_.close_pairs(moved))
-                if (const std::optional<Overlap> overlap = search_.look_at(pair)) found.push_back({pair, *overlap});
+                if (const std::optional<Overlap> overlap = search_.overlap_of(pair)) found.push_back({pair, *overlap});
         }
     }
 
@@ -70,8 +70,8 @@ private:
         Real least;      // [m]
     };
 
-    [[noreturn]] void refuse(const PairOverlap& found, const std::string& why) const {
-        refuse_overlap(report_of(model_, found), others_, why);
+    [[noreturn]] void refuse(const PairOverlap& found, const std::string& reason) const {
+        refuse_overlap(report_of(model_, found), others_, reason);
     }
 
     /// Inverse mass of a body [1/kg], or 0 for a body that must not move. These are held bodies, bodies that an earlier
@@ -93,7 +93,7 @@ private:
         return thickness / 2;
     }
 
-    void require_way_out(const PairOverlap& found) {
+    void require_resolvable(const PairOverlap& found) {
         const bool in_surface = !found.pair.is_analytic && found.overlap.kind == OverlapKind::inside &&
                                 model_.bodies.kind[found.pair.second] == BodyKind::kinematic;
         if (in_surface)
@@ -197,11 +197,11 @@ void World::settle_start() {
     const std::vector<PairOverlap> overlaps = search.find_all();
     std::vector<StartOverlap> reports;
     for (const PairOverlap& found : overlaps) reports.push_back(report_of(model, found));
-    const StartOverlaps wanted = model.settings.start_overlaps;
-    if (!overlaps.empty() && wanted == StartOverlaps::refuse)
+    const StartOverlaps treatment = model.settings.start_overlaps;
+    if (!overlaps.empty() && treatment == StartOverlaps::refuse)
         refuse_overlap(reports.front(), reports.size() - 1, "the setting start_overlaps is \"refuse\"");
     std::vector<StartMove> moves;
-    if (!overlaps.empty() && wanted == StartOverlaps::resolve) {
+    if (!overlaps.empty() && treatment == StartOverlaps::resolve) {
         MoveApart(model, search).run(overlaps);
         moves = take_over_shifts(search, model);
         for (const StartMove& move : moves)

@@ -20,31 +20,33 @@ std::string text(Vec3 value) {
 
 std::string StartOverlap::message() const {
     const bool bodies = collider == ColliderHandle{};
-    const std::string one = "body '" + first_name + "'", other = (bodies ? "body '" : "collider '") + second_name + "'",
-                      both = bodies ? "bodies '" + first_name + "' and '" + second_name + "'" : one + " and " + other,
-                      where = " at " + text(place) + " m";
+    const std::string first_text = "body '" + first_name + "'",
+                      second_text = (bodies ? "body '" : "collider '") + second_name + "'",
+                      both = bodies ? "bodies '" + first_name + "' and '" + second_name + "'"
+                                    : first_text + " and " + second_text,
+                      place_text = " at " + text(place) + " m";
     switch (kind) {
         case OverlapKind::crossing:
-            return both + " overlap by " + short_text(depth) + " m" + where;
+            return both + " overlap by " + short_text(depth) + " m" + place_text;
         case OverlapKind::inside:
-            return one + " is inside " + other + where + ", " + short_text(depth) + " m deep";
+            return first_text + " is inside " + second_text + place_text + ", " + short_text(depth) + " m deep";
         case OverlapKind::around:
-            return other + " is inside " + one + where + ", " + short_text(depth) + " m deep";
+            return second_text + " is inside " + first_text + place_text + ", " + short_text(depth) + " m deep";
         case OverlapKind::coincident:
-            return both + " coincide" + where;
+            return both + " coincide" + place_text;
     }
     return {};
 }
 
-void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::string& why) {
+void refuse_overlap(const StartOverlap& overlap, std::size_t other_count, const std::string& reason) {
     const bool second_leaves = overlap.kind == OverlapKind::around;
     const Vec3 direction = second_leaves ? Vec3(-overlap.direction) : overlap.direction;
-    const std::string rest = others == 0   ? ""
-                             : others == 1 ? ", and 1 more overlap"
-                                           : ", and " + std::to_string(others) + " more overlaps";
-    refuse("start_overlaps", {}, "an overlap: " + overlap.message() + rest,
+    const std::string more_text = other_count == 0   ? ""
+                                  : other_count == 1 ? ", and 1 more overlap"
+                                                     : ", and " + std::to_string(other_count) + " more overlaps";
+    refuse("start_overlaps", {}, "an overlap: " + overlap.message() + more_text,
            "bodies that are apart from each other and from colliders",
-           why + "; to remove this overlap, move '" + (second_leaves ? overlap.second_name : overlap.first_name) +
+           reason + "; to remove this overlap, move '" + (second_leaves ? overlap.second_name : overlap.first_name) +
                "' by " + short_text(overlap.depth) + " m along " + text(direction) +
                ", or set start_overlaps to \"ignore\" to start with the overlap");
 }

@@ -50,7 +50,7 @@ StartSearch::StartSearch(const Model& model, Real now)
 std::vector<PairOverlap> StartSearch::find_all() {
     std::vector<PairOverlap> found;
     for (const StartPair& pair : close_pairs(std::vector<char>(box_.size(), 1)))
-        if (const std::optional<Overlap> overlap = look_at(pair)) found.push_back({pair, *overlap});
+        if (const std::optional<Overlap> overlap = overlap_of(pair)) found.push_back({pair, *overlap});
     return found;
 }
 
@@ -98,7 +98,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
     }
 }
 
-std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
+std::optional<Overlap> StartSearch::overlap_of(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
     // An overlap below this fraction of the margin counts as touching, as in a step (contact_reach.h).
     if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
@@ -146,8 +146,8 @@ Vec3 StartSearch::extent(Index body) const {
 
 Real StartSearch::margin(const StartPair& pair) const {
     const Column<Real>& distance = model_.bodies.contact_distance;
-    const Real kept = (distance[pair.first] + (pair.is_analytic ? 0 : distance[pair.second])) / 2;
-    return std::min(kept, largest_margin * mean_edge(pair));
+    const Real required_gap = (distance[pair.first] + (pair.is_analytic ? 0 : distance[pair.second])) / 2;
+    return std::min(required_gap, largest_margin * mean_edge(pair));
 }
 
 Aabb StartSearch::box(Index body) const {

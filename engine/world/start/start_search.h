@@ -40,7 +40,7 @@ public:
     /// one must not have been checked by an earlier search. `marked`: for each row of BodyTable, nonzero if the body is
     /// marked.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
-    std::optional<Overlap> look_at(const StartPair& pair);
+    std::optional<Overlap> overlap_of(const StartPair& pair);
 
     void move(Index body, const Vec3& by) { shift_[static_cast<std::size_t>(body)] += by; }
     std::span<const Vec3> shifts() const { return shift_; }

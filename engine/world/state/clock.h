@@ -8,8 +8,8 @@ namespace skerry {
 /// A long step of the implicit bodies, during which all other bodies take several steps. Between calls of advance()
 /// there is no long step.
 struct LongStepClock {
-    Real length = 0;  // length of the long step; 0: there is no long step [s]
-    Real left = 0;    // time that is left until the end of the long step [s]
+    Real length = 0;     // length of the long step; 0: there is no long step [s]
+    Real remaining = 0;  // time until the end of the long step [s]
 };
 
 /// Times of a world. All members are part of its state, since the next step depends on them.

@@ -143,8 +143,8 @@ const char* Model::round_name(std::size_t body) const {
     return core == 1 ? "sphere" : core == 2 ? "capsule" : "cylinder";
 }
 
-Index Model::user_tetrahedron(std::size_t body, Index place) const {
-    return place - static_cast<Index>(element_lanes) * bodies.tetrahedron_blocks[body].begin;
+Index Model::user_tetrahedron(std::size_t body, Index lane) const {
+    return lane - static_cast<Index>(element_lanes) * bodies.tetrahedron_blocks[body].begin;
 }
 
 void Model::wake(std::size_t body) {

@@ -228,9 +228,9 @@ struct Model {
     /// unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
-    /// Returns the number of a tetrahedron in the mesh given by the user. `place`: row of the block of the tetrahedron
-    /// times element_lanes, plus its lane.
-    Index user_tetrahedron(std::size_t body, Index place) const;
+    /// Returns the number of a tetrahedron in the mesh given by the user. `lane`: row of the block of the tetrahedron
+    /// times element_lanes, plus its lane in the block.
+    Index user_tetrahedron(std::size_t body, Index lane) const;
 
     /// Wakes one body, or all bodies.
     void wake(std::size_t body);

@@ -40,7 +40,7 @@ struct RunRecord {
     // by entry of contact_view: row of StepScratch::contacts; of sleeping bodies: ~row of ContactCache::resting
     Column<Index> contact_rows;
     bool contact_view_is_current = false;
-    // true if the last check of the balance followed a skipped step (left_out), and nothing has moved since
+    // true if the last check of the balance followed a skipped step, and nothing has moved since
     bool balance_of_rest = false;
 };
 

@@ -38,10 +38,10 @@ namespace skerry {
 
 /// Inputs of a step. They are set before its stages start, and no stage writes them.
 struct StepParameters {
-    Real h = 0;        // step length: time by which positions move [s]
-    Real kick = 0;     // time for which forces act on velocities in this step [s]
-    Real longest = 0;  // estimated upper bound of the length of the next step [s]
-    Real lag = 0;      // time by which velocities are older than positions when the kick begins [s]
+    Real h = 0;          // step length: time by which positions move [s]
+    Real kick_time = 0;  // time for which forces act on velocities in this step [s]
+    Real longest = 0;    // estimated upper bound of the length of the next step [s]
+    Real lag = 0;        // time by which velocities are older than positions when the kick begins [s]
     // time by which velocities are older than positions between steps: `lag`, or 0 with leapfrog [s]
     Real work_lag = 0;
     ForceIntervals intervals;     // time intervals in which forces act in this step
@@ -145,7 +145,7 @@ struct StepScratch {
     RunCounters counters;      // counters of the last committed step alone (count_step)
     Real awake_mass = 0;       // mass of bodies, except ghosts, that are awake at the start of the step [kg]
     bool ran_inline = false;   // true if all stages ran on the calling thread
-    bool left_out = false;     // true if no stage ran in this step, because nothing moves (nothing_moves)
+    bool skipped = false;      // true if no stage ran in this step, because nothing moves (nothing_moves)
 
     SeparationMemory separation_memory;
     SolverMemory solver_memory;

@@ -137,7 +137,7 @@ void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
     const Real trusted = trusted_step(world.model, &body);
-    body = place_of_stiffest(world, body);
+    body = world_row_of_stiffest(world, body);
     if (body == no_index || *world.model.settings.step_size <= trusted) return;
     ++report.limited;
     ++world.record.counters.limited;
@@ -167,7 +167,7 @@ void complete_step(WorldState& world, std::uint64_t let_through, StepReport& rep
 /// later, because positions are ahead of velocities (leapfrog).
 bool check_after_rounds(WorldState& world) {
     world.draw();
-    if (!world.scratch.left_out)
+    if (!world.scratch.skipped)
         find_self_crossings(*world.executor, world.model, world.clock.time, world.scratch.self_crossing_places,
                             world.record.self_crossings);
     if (world.clock.offset != 0) return false;
@@ -181,7 +181,7 @@ bool is_too_stiff(WorldState& world, const AttemptLimits& attempt, Real end) {
     Index stiffest = no_index;
     const Real trusted = trusted_step(world.model, &stiffest);
     if (std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end) return false;
-    world.scratch.findings.verdict = {StepFault::too_stiff, place_of_stiffest(world, stiffest), no_index, trusted};
+    world.scratch.findings.verdict = {StepFault::too_stiff, world_row_of_stiffest(world, stiffest), no_index, trusted};
     return true;
 }
 
@@ -191,7 +191,7 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     const Real step = step_of_turns(world.model, attempt.slow_enough, row);
     if (!(step < attempt.slow_enough)) return;
     attempt.slow_enough = step;
-    attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
+    attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.world_row_of(row);
 }
 
 /// Fetches bodies from other ranks if the last attempt lacked bodies or new holders must be found. Otherwise does
@@ -199,7 +199,7 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
 /// unknown), because new ghosts have no forces. The assumed stiffness of clusters is restored, so that the next attempt
 /// stiffens the same clusters again and its forces contain the impulses of this stiffening.
 bool fetch_ghosts(WorldState& world) {
-    if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
+    if (!world.ranks.all_findings.bodies_missing && !world.ranks.all_findings.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
     update_ghosts(world);
     world.scratch.parameters.h = 0;
@@ -215,7 +215,7 @@ void require_countable(const WorldState& world, Real dt) {
     const Real stable = stable_step(model, &body) * model.tuning.step_safety;
     const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
-    body = place_of_stiffest(world, body);
+    body = world_row_of_stiffest(world, body);
     const bool of_body = !model.settings.step_size && body != no_index;
     refuse("advance", "dt",
            short_text(dt) + " s in steps of " + short_text(step) + " s" +
@@ -270,11 +270,11 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     require_countable(world, dt);
     StepReport report;
     const Real end = clock.time + dt;
-    Real left = dt;
+    Real remaining = dt;
     AttemptLimits attempt = limits_of_first_attempt(world);
     // Stored crossings belong to a step that the last call of advance abandoned. Bodies may have changed since then.
     world.cache.crossings.row.clear();
-    if (world.record.counters.steps == 0 && left > 0)
+    if (world.record.counters.steps == 0 && remaining > 0)
         check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // if there are force elements, they read all nodes in every step, so nodes that only draw round bodies must be up
@@ -289,7 +289,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     // With ranks, each rank sums the share of its own bodies, and join_records adds all shares.
     Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
-    stops = world.ranks.all.stop = false;
+    stops = world.ranks.all_findings.stop = false;
     world.transaction.begin_call(model, clock);
     ForceLedger& forces = world.record.forces;
     const Real step_before = clock.step_before;
@@ -299,11 +299,11 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         drift_to(*world.executor, offset, model, clock, search);
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
-    while (left > 0) {
+    while (remaining > 0) {
         if (go_on && !stops && !callbacks.run([&] { return go_on(std::as_const(report)); })) stops = true;
         // The stages of each step tell all ranks whether one of them stops (all.stop), so all ranks end the call after
         // the same step.
-        if (world.ranks.on() ? world.ranks.all.stop : stops) {
+        if (world.ranks.on() ? world.ranks.all_findings.stop : stops) {
             report.status = StepStatus::stopped;
             break;
         }
@@ -316,7 +316,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         // Attempts with longer lists or with crossings must keep the step length for which the lists or crossings were
         // found.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
-        const Real within = left_in_long_step(model, left, clock.long_step);
+        const Real within = time_to_end_of_long_step(model, remaining, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
         if (model.watch.first_piece.empty()) count_pieces(world);
         store_shapes(*world.executor, model, steps_per_round(world));
@@ -336,7 +336,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         }
         if (outcome != StepOutcome::committed) continue;
         complete_step(world, let_through, report);
-        left = plan.steps > 1 || within < left ? left - plan.h : 0;
+        remaining = plan.steps > 1 || within < remaining ? remaining - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
         balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world) && !check_after_rounds(world)) check_at_end = true;
@@ -349,7 +349,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         if (!heard && !world.ranks.on()) break;
     }
     // A rank may have asked to stop in the last step. The loop then ends before its check of all.stop.
-    if (!(left > 0) && world.ranks.all.stop) report.status = StepStatus::stopped;
+    if (!(remaining > 0) && world.ranks.all_findings.stop) report.status = StepStatus::stopped;
     clock.long_step = {};                // no long step continues in the next call
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
     if (report.steps == 0) {
@@ -368,7 +368,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     join_reports(world, report);
     world.draw();
     world.query_trees.forget();
-    if (left == 0) clock.time = end;
+    if (remaining == 0) clock.time = end;
     if (check_at_end) check_balance_after_motion(world);
     return report;
 }

@@ -17,14 +17,14 @@ namespace skerry {
 
 namespace {
 
-struct Present {
+struct BodySums {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
     // sum of magnitudes: of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
     Real momentum_size = 0;  // [kg m/s]
     bool damps_held_body = false, holds_implicit_element = false;
 
-    void add(const Present& other) {
+    void add(const BodySums& other) {
         kinetic += other.kinetic;
         elastic += other.elastic;
         potential += other.potential;
@@ -50,60 +50,61 @@ Real sum_of_own_blocks(const Model& model, auto&& energy) {
 }
 
 /// Energy and momentum of the bodies that this rank owns.
-Present measure(const Model& model, Real time, Real lag) {
-    Present now;
+BodySums measure(const Model& model, Real time, Real lag) {
+    BodySums total;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
         if (of_ghost(model, n)) continue;
-        now.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
+        total.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
         if (model.node_has_frame(n)) continue;
         const Vec3 momentum = nodes.mass[n] * nodes.velocity[n];
-        now.momentum_size += momentum.norm();
+        total.momentum_size += momentum.norm();
         if (!(nodes.inverse_mass[n] > 0)) continue;
-        now.kinetic += momentum.dot(nodes.velocity[n]) / 2;
-        now.momentum += momentum;
+        total.kinetic += momentum.dot(nodes.velocity[n]) / 2;
+        total.momentum += momentum;
     }
     Real implicit = 0;  // [J]
     // Momentum of all nodes and bodies whose velocities are changed by kicks [kg m/s]. Nodes of held implicit bodies
     // are not included, because the theta method moves them.
-    Vec3 kicked = now.momentum;
+    Vec3 kicked = total.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
         if ((model.is_held(b) && model.is_rigid(b)) || model.bodies.is_ghost(b)) continue;
-        const RigidSums sums = model.is_held(b) ? moving_sums(model, b) : rigid_sums(model, b);
-        now.kinetic += sums.kinetic;
-        implicit += sums.elastic;
-        now.momentum += sums.momentum;
-        now.momentum_size += sums.momentum.norm();
-        if (!model.is_held(b)) kicked += sums.momentum;
+        const RigidSums of_body = model.is_held(b) ? moving_sums(model, b) : rigid_sums(model, b);
+        total.kinetic += of_body.kinetic;
+        implicit += of_body.elastic;
+        total.momentum += of_body.momentum;
+        total.momentum_size += of_body.momentum.norm();
+        if (!model.is_held(b)) kicked += of_body.momentum;
     }
-    now.kinetic += added_energy(model);
+    total.kinetic += added_energy(model);
     // The velocities are `lag` (half a step) older than the positions. The kinetic energy is therefore increased by
     // `lag` times the power of all forces but contacts, which is its change to first order. The reason: with the
     // velocities v and v' before and after a kick and the mass m, symplectic Euler conserves m v.v' / 2 plus the
     // elastic energy of linear elastic bodies.
     if (lag != 0) {
-        now.kinetic -= lag * sum_of_own_blocks(model, [&](const Range& blocks) {
-                           return kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
-                       });
+        total.kinetic -=
+            lag * sum_of_own_blocks(model, [&](const Range& blocks) {
+                return kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
+            });
         Real power = kicked.dot(model.settings.gravity);
         if (model.forced)  // the forces of the last step are used, as in balance.work
             for (std::size_t n = 0; n < nodes.position.size(); ++n) {
                 if (of_ghost(model, n)) continue;
                 // Applied forces, for example of springs, exchange momentum even while all nodes are at rest. They act
                 // for the time of one step, twice the lag.
-                now.momentum_size += 2 * std::abs(lag) * nodes.applied_before[n].norm();
+                total.momentum_size += 2 * std::abs(lag) * nodes.applied_before[n].norm();
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);
             }
-        now.kinetic += lag * power;
+        total.kinetic += lag * power;
     }
-    now.elastic = implicit + sum_of_own_blocks(model, [&](const Range& blocks) {
-                      return kernels().elastic_energy(model.all_elements(), blocks, nodes.position);
-                  });
+    total.elastic = implicit + sum_of_own_blocks(model, [&](const Range& blocks) {
+                        return kernels().elastic_energy(model.all_elements(), blocks, nodes.position);
+                    });
     for (const ForceElement* element : force_elements)
-        if (element->energy && element->any(model)) now.elastic += element->energy(model, time, lag);
-    return now;
+        if (element->energy && element->any(model)) total.elastic += element->energy(model, time, lag);
+    return total;
 }
 
 bool damps_held_body(const Model& model) {
@@ -136,7 +137,7 @@ void add_step(const StepScratch& step, Balance& balance) {
     const ContactMeasures& contacts = step.findings.measures;
     const ExternalWork& external = step.findings.external;
     const std::array<Vec3, 9> impulses{
-        step.parameters.kick * step.awake_mass * step.parameters.gravity,
+        step.parameters.kick_time * step.awake_mass * step.parameters.gravity,
         external.impulse,
         step.findings.held.impulse + step.findings.held_rows.impulse + step.findings.held_again.impulse,
         step.findings.strained.impulse,
@@ -168,13 +169,13 @@ void add_step(const StepScratch& step, Balance& balance) {
 
 void check_balance(const WorldState& world, Real time, Real lag, Balance& balance) {
     const Model& model = world.model;
-    Present now = measure(model, time, lag);
+    BodySums now = measure(model, time, lag);
     now.damps_held_body = !balance.open && damps_held_body(model);
     now.holds_implicit_element = holds_implicit_element(model);
     if (world.ranks.on()) {
-        const Present mine = std::exchange(now, {});
-        for_each_gathered<Present>(*world.ranks.ranks, std::span(&mine, 1),
-                                   [&](const Present& of_rank) { now.add(of_rank); });
+        const BodySums own_sums = std::exchange(now, {});
+        for_each_gathered<BodySums>(*world.ranks.ranks, std::span(&own_sums, 1),
+                                    [&](const BodySums& of_rank) { now.add(of_rank); });
     }
     const Real energy = now.kinetic + now.elastic + now.potential;
     const bool was_open = balance.open;

@@ -75,23 +75,23 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
 }
 
 /// Copy of the mass shares, mass forms, frame masses and implicit moduli of a body, from which they can be restored.
-struct Kept {
+struct SavedElements {
     std::vector<ElementLane> mass_share, modulus;
     std::vector<ElementForm> mass_form;
     std::vector<FrameMass> frame_mass;
     std::vector<Real> frame_bound;
-    Kept(Model& model, std::size_t b) {
-        const auto keep = [&](auto& column, auto& kept) {
+    SavedElements(Model& model, std::size_t b) {
+        const auto save_rows = [&](auto& column, auto& saved_rows) {
             const auto rows = rows_of(column, model.bodies.blocks[b]);
-            kept.assign(rows.begin(), rows.end());
+            saved_rows.assign(rows.begin(), rows.end());
         };
-        keep(model.elements.mass_share, mass_share);
-        keep(model.elements.implicit_modulus, modulus);
-        keep(model.elements.mass_form, mass_form);
-        keep(model.elements.frame_mass, frame_mass);
-        keep(model.elements.frame_bound, frame_bound);
+        save_rows(model.elements.mass_share, mass_share);
+        save_rows(model.elements.implicit_modulus, modulus);
+        save_rows(model.elements.mass_form, mass_form);
+        save_rows(model.elements.frame_mass, frame_mass);
+        save_rows(model.elements.frame_bound, frame_bound);
     }
-    void put_back(Model& model, std::size_t b) const {
+    void restore(Model& model, std::size_t b) const {
         const Range blocks = model.bodies.blocks[b];
         std::ranges::copy(mass_share, rows_of(model.elements.mass_share, blocks).begin());
         std::ranges::copy(modulus, rows_of(model.elements.implicit_modulus, blocks).begin());
@@ -117,26 +117,26 @@ void note_implicit(Model& model, std::size_t b) {
 }
 
 /// Largest increase of the smallest moment of inertia of a body that clusters may cause, as a fraction of this moment.
-Real most_moment_of(const Model& model, std::size_t b) {
+Real largest_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
     return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
                                                                 rows_of(model.tetrahedra.volume, blocks),
                                                                 model.nodes.rest_position));
 }
 
-struct Found {
+struct Assessment {
     bool possible = false;  // false if too many elements would be implicit, or clusters would be too large or too heavy
     Real moment = 0;        // moment of inertia that clusters add, divided by the largest allowed value
     ClusterSizes sizes{};
 };
 
-Found judged(const Model& model, std::size_t b, const ImplicitShare& share, Real most) {
-    if (share.too_many || !(share.moment <= most)) return {};
+Assessment assess(const Model& model, std::size_t b, const ImplicitShare& share, Real largest_moment) {
+    if (share.too_many || !(share.moment <= largest_moment)) return {};
     const Range blocks = model.bodies.blocks[b];
     const ClusterSizes sizes = cluster_sizes(
         model.all_elements(), blocks, rows_of(model.elements.implicit_modulus, blocks), model.nodes.inverse_mass);
     if (sizes.largest > largest_cluster) return {};
-    return {true, share.moment / most, sizes};
+    return {true, share.moment / largest_moment, sizes};
 }
 
 ImplicitOutputs outputs_of(Model& model, Range blocks) {
@@ -147,67 +147,67 @@ ImplicitOutputs outputs_of(Model& model, Range blocks) {
 class Searches {
 public:
     Searches(Model& model, std::span<Real> stiffness_sum)
-        : model_(model), stiffness_sum_(stiffness_sum), twin_(find_twins(model)), of_first_(twin_.size()) {
-        for (const std::size_t first : twin_) ++of_first_[first].bodies;
+        : model_(model), stiffness_sum_(stiffness_sum), twin_(find_twins(model)), groups_(twin_.size()) {
+        for (const std::size_t first : twin_) ++groups_[first].bodies;
     }
 
     /// True if a body is large and too much of its volume would be implicit at the step length `step` [s].
-    bool too_many(std::size_t b, Real step) {
-        OfTwins& twins = of_first_[twin_[b]];
-        if (!(model_.bodies.nodes[b].size() > nodes_of_large) || known_of(twins, step)) return false;
+    bool too_much_volume(std::size_t b, Real step) {
+        TwinGroup& twins = groups_[twin_[b]];
+        if (!(model_.bodies.nodes[b].size() > nodes_of_large) || stored_result(twins, step)) return false;
         start(b, twins);
         return twins.search->estimate_volume(step / gain_of_forms) > most_volume_of_large;
     }
 
     /// Finds the implicit elements of a body for the step length `step` [s], and writes the element columns of the
-    /// body. If Found::possible is false, the written values are invalid and the caller must restore the columns.
-    Found find(std::size_t b, Real step) {
-        OfTwins& twins = of_first_[twin_[b]];
-        if (const Result* known = known_of(twins, step)) {
-            known->elements.put_back(model_, b);
-            return known->found;
+    /// body. If Assessment::possible is false, the written values are invalid and the caller must restore the columns.
+    Assessment find(std::size_t b, Real step) {
+        TwinGroup& twins = groups_[twin_[b]];
+        if (const Result* stored = stored_result(twins, step)) {
+            stored->elements.restore(model_, b);
+            return stored->found;
         }
         start(b, twins);
-        const Kept kept(model_, twins.searched);
+        const SavedElements saved(model_, twins.searched);
         const ImplicitShare share = twins.search->find(
             {step, step / gain_of_forms, headroom, twins.most_moment, largest_cluster, model_.nodes.inverse_mass});
-        const Found found = judged(model_, twins.searched, share, twins.most_moment);
-        Result result{step, found, Kept(model_, twins.searched)};
-        kept.put_back(model_, twins.searched);
-        result.elements.put_back(model_, b);
-        if (twins.bodies > 1) twins.known.push_back(std::move(result));
+        const Assessment found = assess(model_, twins.searched, share, twins.most_moment);
+        Result result{step, found, SavedElements(model_, twins.searched)};
+        saved.restore(model_, twins.searched);
+        result.elements.restore(model_, b);
+        if (twins.bodies > 1) twins.results.push_back(std::move(result));
         return found;
     }
 
 private:
     struct Result {
         Real step;  // s
-        Found found;
-        Kept elements;
+        Assessment found;
+        SavedElements elements;
     };
-    struct OfTwins {
+    struct TwinGroup {
         std::size_t bodies = 0, searched = 0;
         Real most_moment = 0;  // largest increase of the smallest moment of inertia, as a fraction of this moment
         std::optional<ImplicitSearch> search{};  // created when it is first used
-        std::vector<Result> known{};
+        std::vector<Result> results{};
     };
-    static const Result* known_of(const OfTwins& twins, Real step) {
-        const auto found = std::ranges::find(twins.known, step, &Result::step);
-        return found == twins.known.end() ? nullptr : &*found;
+    static const Result* stored_result(const TwinGroup& twins, Real step) {
+        const auto found = std::ranges::find(twins.results, step, &Result::step);
+        return found == twins.results.end() ? nullptr : &*found;
     }
     /// Starts the search of a group of equal bodies with body b, unless it was started before.
-    void start(std::size_t b, OfTwins& twins) {
+    void start(std::size_t b, TwinGroup& twins) {
         if (twins.search) return;
         const Range blocks = model_.bodies.blocks[b];
         twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
                              stiffness_sum_, outputs_of(model_, blocks), kernels().element_bounds);
         twins.searched = b;
-        twins.most_moment = most_moment_of(model_, b);
+        twins.most_moment = largest_moment_of(model_, b);
     }
     Model& model_;
     std::span<Real> stiffness_sum_;
     std::vector<std::size_t> twin_;
-    std::vector<OfTwins> of_first_;  // for each group of equal bodies, at the row of the first body
+    std::vector<TwinGroup> groups_;  // for each group of equal bodies, at the row of the first body
 };
 
 /// Makes every element of a body explicit again, and finds mass shares and mass forms as for a new body.
@@ -235,8 +235,8 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 
 struct PlannedBody {
     std::size_t row;
-    Real moment;    // moment of inertia that clusters add, divided by the largest allowed value
-    Kept elements;  // elements of the body after the planned change
+    Real moment;             // moment of inertia that clusters add, divided by the largest allowed value
+    SavedElements elements;  // elements of the body after the planned change
 };
 
 /// A choice of implicit elements in all bodies, for one step length.
@@ -252,16 +252,16 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
     Plan plan{.step = step, .body = {}};
     for (std::size_t b = 0; b < model.bodies.slot.size() && plan.possible; ++b) {
         if (!has_elements(model, b) || model.bodies.rest_step[b] >= step) continue;
-        if (forbids_clusters(model, b) || searches.too_many(b, step)) {
+        if (forbids_clusters(model, b) || searches.too_much_volume(b, step)) {
             plan.possible = false;
             break;
         }
-        const Kept kept(model, b);
-        const Found found = searches.find(b, step);
+        const SavedElements saved(model, b);
+        const Assessment found = searches.find(b, step);
         plan.possible = found.possible;
         plan.entries += found.sizes.entries;
-        plan.body.push_back({b, found.moment, Kept(model, b)});
-        kept.put_back(model, b);
+        plan.body.push_back({b, found.moment, SavedElements(model, b)});
+        saved.restore(model, b);
     }
     plan.cost = cost_of(model, plan.entries, step);
     return plan;
@@ -269,8 +269,8 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
 
 /// Makes the planned elements of a body implicit, and chooses mass forms for the other elements. Returns the stable
 /// step of the explicit elements [s].
-Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffness_sum) {
-    planned.elements.put_back(model, planned.row);
+Real make_planned_implicit(Model& model, const PlannedBody& planned, std::span<Real> stiffness_sum) {
+    planned.elements.restore(model, planned.row);
     choose_mass_forms(model, static_cast<Index>(planned.row), stiffness_sum);
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
@@ -297,7 +297,7 @@ Real longest_step(const Model& model) {
 /// Makes the planned elements of all bodies implicit. The clusters are made for the longest step that three limits
 /// allow: the settings, the stable steps of explicit elements (with mass forms), and the moment of inertia that
 /// clusters may add.
-void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
+void make_planned_implicit(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model);
     // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
@@ -306,17 +306,17 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
         // bodies with equal meshes have equal plans, so mass forms are computed for the first one and copied to the
         // others
         if (const std::size_t first = twin[body.row]; stable[first] > 0) {
-            body.elements.put_back(model, body.row);
-            const auto as_first = [&](auto& column) {
+            body.elements.restore(model, body.row);
+            const auto copy_from_first = [&](auto& column) {
                 std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
                                   rows_of(column, model.bodies.blocks[body.row]).begin());
             };
-            as_first(model.elements.mass_form);
-            as_first(model.elements.frame_mass);
-            as_first(model.elements.frame_bound);
+            copy_from_first(model.elements.mass_form);
+            copy_from_first(model.elements.frame_mass);
+            copy_from_first(model.elements.frame_bound);
             stable[body.row] = stable[first];
         } else {
-            stable[body.row] = take_over(model, body, stiffness_sum);
+            stable[body.row] = make_planned_implicit(model, body, stiffness_sum);
         }
         step = std::min({step, stable[body.row], longest_by_moment(plan.step, body.moment)});
     }
@@ -343,20 +343,20 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     if (!(shortest > 0) || !std::isfinite(shortest)) return best;
     best.cost = cost_of(model, 0, std::min(shortest, longest)) / least_gain;
     Searches searches(model, stiffness_sum);
-    const auto look_at = [&](Real step) {
+    const auto try_step = [&](Real step) {
         Plan plan = plan_for(model, step, searches);
         const bool possible = plan.possible;
         if (possible && plan.cost <= best.cost) best = std::move(plan);
         return possible;
     };
     for (Real step = 2 * shortest; step <= most_lengthening * shortest; step *= 2) {
-        if (!look_at(std::min(step, longest)) || !(step < longest)) break;
+        if (!try_step(std::min(step, longest)) || !(step < longest)) break;
     }
-    if (!(best.step > 0) && least_lengthening * shortest < longest) look_at(least_lengthening * shortest);
+    if (!(best.step > 0) && least_lengthening * shortest < longest) try_step(least_lengthening * shortest);
     if (!(best.step > least_lengthening * shortest)) return best;
     for (Real ratio = std::sqrt(Real(2)); ratio > 1.15; ratio = std::sqrt(ratio)) {
         const Real between = best.step * ratio;
-        if (between < longest && between < most_lengthening * shortest) look_at(between);
+        if (between < longest && between < most_lengthening * shortest) try_step(between);
     }
     return best;
 }
@@ -367,35 +367,35 @@ bool clusters_allowed(const Settings& settings) {
     return settings.clusters;
 }
 
-bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
+bool make_implicit(Model& model, std::size_t body, Real step, Real present_step, std::span<Real> stiffness_sum) {
     if (forbids_clusters(model, body)) return false;
     // computing time for inverting a matrix, divided by the cube of its width [ns]
     constexpr Real inversion_cost = 0.4;
-    constexpr Real lasts = 128;  // assumed number of steps between two inversions of a cluster matrix
+    constexpr Real steps_per_inversion = 128;  // assumed number of steps between two inversions of a cluster matrix
     const Range blocks = model.bodies.blocks[body];
-    const Kept kept(model, body);
+    const SavedElements saved(model, body);
     const std::size_t entries = std::max<std::size_t>(model.clusters.inverse.size(), model.of_ranks.cluster_entries);
-    const std::size_t before =
-        cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
-    const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
+    const std::size_t body_entries =
+        cluster_sizes(model.all_elements(), blocks, saved.modulus, model.nodes.inverse_mass).entries;
+    const Real cluster_step = std::max(step, model.bodies.cluster_step[body]);
     // Mass forms are removed, because the search for implicit elements evaluates stable steps with mass shares. Mass
     // shares adapt to the deformed shape, whereas mass forms are the same in every shape.
     forget_mass_forms(model, blocks);
-    const Real most = most_moment_of(model, body);
-    const Found found =
-        judged(model, body,
+    const Real largest_moment = largest_moment_of(model, body);
+    const Assessment found =
+        assess(model, body,
                add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
-                                     {of_clusters, step, headroom, most}, stiffness_sum, outputs_of(model, blocks),
-                                     kernels().element_bounds),
-               most);
-    const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
-    if (found.possible &&
-        cost_of(model, entries - before + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {
-        model.bodies.cluster_step[body] = of_clusters;
+                                     {cluster_step, step, headroom, largest_moment}, stiffness_sum,
+                                     outputs_of(model, blocks), kernels().element_bounds),
+               largest_moment);
+    const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (steps_per_inversion * step);
+    if (found.possible && cost_of(model, entries - body_entries + found.sizes.entries, step) + inversions <
+                              cost_of(model, entries, present_step)) {
+        model.bodies.cluster_step[body] = cluster_step;
         note_implicit(model, body);
         return true;
     }
-    kept.put_back(model, body);
+    saved.restore(model, body);
     return false;
 }
 
@@ -408,7 +408,7 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.cluster_step[b] > 0) make_explicit(model, b, sums);
     const Plan plan = choose_plan(model, sums);
-    if (plan.step > 0) take_over(model, plan, sums);
+    if (plan.step > 0) make_planned_implicit(model, plan, sums);
     model.rebuild_clusters();
     evaluate_stable_steps(model, stiffness_sum);
 }

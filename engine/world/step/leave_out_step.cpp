@@ -72,10 +72,10 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces) {
 void check_balance_after_motion(WorldState& world) {
     Balance& balance = world.record.balance;
     // the balance cannot have changed, because nothing has moved since the last check
-    if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
+    if (balance.open && world.scratch.skipped && world.record.balance_of_rest) return;
     join_records(world);
     check_balance(world, world.clock.time, lag_between_steps(world), balance);
-    world.record.balance_of_rest = world.scratch.left_out;
+    world.record.balance_of_rest = world.scratch.skipped;
 }
 
 }  // namespace skerry

@@ -46,15 +46,15 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
     return largest_turn / spin;
 }
 
-StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
+StepPlan plan_step(const Model& model, Real remaining, Real fast_limit) {
     StepPlan plan;
     plan.stable = trusted_step(model, &plan.stiffest);
     Index fastest = no_index;
     plan.regular = step_of_turns(model, plan.stable, fastest);
     const Real longest = std::min(plan.stable, fast_limit);
     // The tolerance prevents an extra step for a remaining time that is only a rounding error.
-    plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
-    plan.h = left / plan.steps;
+    plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(remaining / longest - 1e-9)) : 1.0;
+    plan.h = remaining / plan.steps;
     return plan;
 }
 
@@ -72,27 +72,27 @@ bool forces_follow_implicit_bodies(const Model& model) {
     });
 }
 
-Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
-    if (!(model.settings.implicit_step > 0)) return left;
-    if (model.implicit_nodes.size() == 0 && !model.of_ranks.has_implicit) return left;
+Real time_to_end_of_long_step(const Model& model, Real remaining, LongStepClock& clock) {
+    if (!(model.settings.implicit_step > 0)) return remaining;
+    if (model.implicit_nodes.size() == 0 && !model.of_ranks.has_implicit) return remaining;
     if (clock.length == 0) {
-        if (model.of_ranks.follow_implicit || forces_follow_implicit_bodies(model)) return left;
+        if (model.of_ranks.follow_implicit || forces_follow_implicit_bodies(model)) return remaining;
         // The tolerance prevents an extra long step for a remaining time that is only a rounding error.
-        const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
-        clock.length = clock.left = left / count;
+        const Real count = std::max(1.0, std::ceil(remaining / model.settings.implicit_step - 1e-9));
+        clock.length = clock.remaining = remaining / count;
     }
-    return clock.left;
+    return clock.remaining;
 }
 
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
-    const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
+    const LongStepTimes times{clock.length, clock.remaining == clock.length, plan.steps == 1};
     // a long step that consists of one step is treated like an ordinary step
     return times.starts && times.ends ? LongStepTimes{} : times;
 }
 
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {
     if (plan.steps > 1)
-        clock.left -= plan.h;
+        clock.remaining -= plan.h;
     else
         clock = {};
 }

@@ -216,30 +216,30 @@ Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
 
 namespace {
 
-/// Number of pieces into which the check of a body's stable step is divided; sent to other ranks. `place`: row of the
-/// body in the undivided world.
-struct PiecesAtPlace {
-    Index place;
+/// Number of pieces into which the check of a body's stable step is divided; sent to other ranks. `world_row`: row of
+/// the body in the undivided world.
+struct PiecesOfBody {
+    Index world_row;
     std::uint32_t pieces;
 };
 
 /// Computes RankState::pieces_before: for each row of the undivided world, the number of pieces of all bodies before
 /// it. The last entry is the number of all pieces. Collective.
 void gather_pieces(const Model& model, RankState& ranks) {
-    std::vector<PiecesAtPlace> mine;
+    std::vector<PiecesOfBody> own_pieces;
     const ElementInputs elements = model.all_elements();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (ranks.owns(b))
-            mine.push_back(
-                {ranks.place[b], static_cast<std::uint32_t>(pieces_of_check(elements, model.bodies.blocks[b]))});
+            own_pieces.push_back(
+                {ranks.world_row[b], static_cast<std::uint32_t>(pieces_of_check(elements, model.bodies.blocks[b]))});
     ranks.pieces_before.clear();
-    for_each_gathered<PiecesAtPlace>(*ranks.ranks, mine, [&](const PiecesAtPlace& body) {
-        const auto place = static_cast<std::size_t>(body.place);
-        ranks.pieces_before.resize(std::max(ranks.pieces_before.size(), place + 2), 0);
-        ranks.pieces_before[place + 1] = body.pieces;
+    for_each_gathered<PiecesOfBody>(*ranks.ranks, own_pieces, [&](const PiecesOfBody& body) {
+        const auto world_row = static_cast<std::size_t>(body.world_row);
+        ranks.pieces_before.resize(std::max(ranks.pieces_before.size(), world_row + 2), 0);
+        ranks.pieces_before[world_row + 1] = body.pieces;
     });
-    for (std::size_t place = 1; place < ranks.pieces_before.size(); ++place)
-        ranks.pieces_before[place] += ranks.pieces_before[place - 1];
+    for (std::size_t world_row = 1; world_row < ranks.pieces_before.size(); ++world_row)
+        ranks.pieces_before[world_row] += ranks.pieces_before[world_row - 1];
 }
 
 }  // namespace
@@ -257,7 +257,7 @@ void count_pieces(WorldState& world) {
         return;
     }
     if (ranks.pieces_before.empty()) gather_pieces(model, ranks);
-    for (std::size_t b = 0; b < rows; ++b) first[b] = ranks.pieces_before[static_cast<std::size_t>(ranks.place[b])];
+    for (std::size_t b = 0; b < rows; ++b) first[b] = ranks.pieces_before[static_cast<std::size_t>(ranks.world_row[b])];
     if (!ranks.pieces_before.empty()) first[rows] = ranks.pieces_before[ranks.pieces_before.size() - 1];
 }
 

@@ -179,7 +179,7 @@ void measure_forces(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/measure_reactions", measure_reactions,
             inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
                                    m.rigid_bodies, w.scratch.axis_impulse, f.held_impulse, f.held_velocity),
-            value(p.kick), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
+            value(p.kick_time), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
 /// Lists the checks that all motion models share: velocities are finite and slow enough, and no element deforms too
@@ -200,7 +200,7 @@ void check_end(WorldState& w, TaskGraph& g) {
                                 value(m.forced), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
                         inputs<WorkInputs>(n, m.attachments, b, m.rigid_bodies, m.forced, m.any_asleep, p.gravity),
-                        value(p.h), value(p.kick), value(p.work_lag), make(w.scratch.work_parts), if_any);
+                        value(p.h), value(p.kick_time), value(p.work_lag), make(w.scratch.work_parts), if_any);
     of_forces<&ForceElement::measure>(w, g);
 }
 

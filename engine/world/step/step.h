@@ -33,12 +33,12 @@ struct NamedBody {
     BodyHandle body{};  // handle of no body if the object is a mesh collider
     std::string name;
 };
-/// Returns the handle and name of a body, even if only other ranks hold it. `place`: row of the body in the undivided
-/// world; without ranks, its row in BodyTable.
-NamedBody name_body(const WorldState& world, Index place);
+/// Returns the handle and name of a body, even if only other ranks hold it. `world_row`: row of the body in the
+/// undivided world; without ranks, its row in BodyTable.
+NamedBody name_body(const WorldState& world, Index world_row);
 /// Returns the row in the undivided world of the body with the shortest stable step. `row`: row of this body as
 /// stable_step has set it (its argument `body`).
-Index place_of_stiffest(const WorldState& world, Index row);
+Index world_row_of_stiffest(const WorldState& world, Index row);
 
 // ranks/lead_ghosts.cpp
 
@@ -72,7 +72,7 @@ void list_joined_sets(WorldState& world, TaskGraph& graph);  // joins sets of to
 
 /// Lists the stage that combines the findings of all ranks. Lists nothing if this process simulates the whole world.
 void list_reduction(WorldState& world, TaskGraph& graph);
-/// Must be called before the stages run. Makes all ranks agree whether the step is skipped (StepScratch::left_out), and
+/// Must be called before the stages run. Makes all ranks agree whether the step is skipped (StepScratch::skipped), and
 /// whether a body is too far from the origin. Communicates only if, according to the last attempt, one of the two is
 /// possible. Without ranks it does nothing.
 void agree_to_start(WorldState& world);
@@ -82,9 +82,9 @@ void agree_to_start(WorldState& world);
 /// Computes Model::of_ranks from the bodies of all ranks. Sets Model::forced if any rank has force elements. Without
 /// ranks it does nothing.
 void reduce_limits(WorldState& world);
-/// Returns the fastest deformation of all ranks, with the row of its body in the undivided world. `mine`: fastest
-/// deformation of this rank, with the row in BodyTable. Without ranks it returns `mine`.
-StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine);
+/// Returns the fastest deformation of all ranks, with the row of its body in the undivided world. `own`: fastest
+/// deformation of this rank, with the row in BodyTable. Without ranks it returns `own`.
+StrainRate fastest_of_ranks(WorldState& world, const StrainRate& own);
 
 // ranks/regions
 
@@ -181,8 +181,8 @@ bool clusters_allowed(const Settings& settings);
 void settle_clusters(Model& model, Column<Real>& stiffness_sum);
 /// Makes more elements of a body implicit: those that are unstable at the step length `step` [s]. Returns false, and
 /// changes nothing, in three cases: the body must not have clusters, the clusters would be too large or too heavy, or
-/// steps of the present length `present` [s] take less computing time.
-bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum);
+/// steps of the present length `present_step` [s] take less computing time.
+bool make_implicit(Model& model, std::size_t body, Real step, Real present_step, std::span<Real> stiffness_sum);
 /// Kinetic energy of the inertia that all implicit elements add to their nodes [J].
 Real added_energy(const Model& model);
 
@@ -203,8 +203,8 @@ struct StepPlan {
     // row in BodyTable of the body with the shortest stable step; no_index if this step comes from Model::of_ranks
     Index stiffest = no_index;
 };
-/// Plans the next step of an interval that ends in `left` seconds. The step is at most `fast_limit` seconds long.
-StepPlan plan_step(const Model& model, Real left, Real fast_limit);
+/// Plans the next step of an interval that ends in `remaining` seconds. The step is at most `fast_limit` seconds long.
+StepPlan plan_step(const Model& model, Real remaining, Real fast_limit);
 /// Greatest angular speed of a body with a joint or tie [rad/s]. `body`: set to the row of this body in BodyTable.
 Real fastest_spin(const Model& model, Index* body = nullptr);
 /// Longest step in which no body with a joint or tie rotates by more than a small angle, but at most `shorter_than`
@@ -215,8 +215,8 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);
 /// evaluated in every step, so implicit bodies then take no long steps.
 bool forces_follow_implicit_bodies(const Model& model);
 /// Returns the time until the end of the long step that contains the next step [s]. Begins a long step if there is
-/// none. In worlds without long steps, returns `left`, the time until the end of the call.
-Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);
+/// none. In worlds without long steps, returns `remaining`, the time until the end of the call.
+Real time_to_end_of_long_step(const Model& model, Real remaining, LongStepClock& clock);
 /// Returns the length of the current long step of the implicit bodies, and whether the planned step is the first or the
 /// last step within this long step.
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan);

@@ -91,8 +91,8 @@ bool run_stages(WorldState& world) {
         scratch.findings.unstrained = before.unstrained;
     }
     scratch.awake_mass = model.note_rest();
-    scratch.left_out = nothing_moves(world);
-    if (!scratch.left_out || world.ranks.on())
+    scratch.skipped = nothing_moves(world);
+    if (!scratch.skipped || world.ranks.on())
         scratch.findings.verdict =
             check_distance(*world.executor, model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
     agree_to_start(world);
@@ -104,7 +104,7 @@ bool run_stages(WorldState& world) {
     world.transaction.begin_try(model);
     if (world.ranks.on() && !scratch.parameters.forces_known) world.transaction.keep_stiffness(model);
     world.record.contact_view_is_current = false;
-    if (scratch.left_out) {
+    if (scratch.skipped) {
         scratch.ran_inline = false;
         if (scratch.parameters.forces_wanted) forget_forces_of_step(model, scratch.forces);
         return true;
@@ -157,11 +157,11 @@ RunCounters counters_of_step(const WorldState& world) {
     const StepScratch& scratch = world.scratch;
     const StepFindings& found = scratch.findings;
     RunCounters counters =
-        world.ranks.on() && !scratch.left_out
-            ? world.ranks.all.counters
+        world.ranks.on() && !scratch.skipped
+            ? world.ranks.all_findings.counters
             : count_step(scratch.contacts, scratch.regions, found.measures, found.strained.newton, found.unstrained);
     counters.inline_steps = scratch.ran_inline;
-    counters.resting_steps = scratch.left_out;
+    counters.resting_steps = scratch.skipped;
     return counters;
 }
 
@@ -171,10 +171,10 @@ void commit(WorldState& world) {
     world.cache.crossings.row.clear();
     world.cache.search.end_step(true);
     if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
-    if (!scratch.left_out) {
+    if (!scratch.skipped) {
         keep_frames(world);
         flow(world);
-        if (world.ranks.on() ? world.ranks.all.pushed : scratch.regions.pushed) {
+        if (world.ranks.on() ? world.ranks.all_findings.pushed : scratch.regions.pushed) {
             forget_unstrained(scratch.contacts, world.model.bodies);
             for (const Index body : scratch.rank_regions.touched_bodies) world.model.bodies.unstrained[body] = 0;
         }
@@ -202,7 +202,7 @@ void note_step(WorldState& world, const StepPlan& plan, const AttemptLimits& att
     if (!(attempt.at_most() < plan.stable)) {
         const bool here = plan.stiffest != no_index;
         const auto b = static_cast<std::size_t>(plan.stiffest);
-        body = place_of_stiffest(world, plan.stiffest);
+        body = world_row_of_stiffest(world, plan.stiffest);
         const Real stable = here ? step_of_body(model, b) : model.of_ranks.stable_step;
         const bool set = body == no_index || plan.stable < stable * model.tuning.step_safety;
         const bool strained = here ? is_strained(model, b) : model.of_ranks.strained;
@@ -310,13 +310,13 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     scratch.parameters.forces_known = tried && scratch.parameters.h == plan.h;
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
-    scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
-    scratch.parameters.lag = scratch.parameters.kick - plan.h / 2;
+    scratch.parameters.kick_time = kick_of_step(world.model, world.clock, plan);
+    scratch.parameters.lag = scratch.parameters.kick_time - plan.h / 2;
     const bool leapfrog = world.model.settings.integrator == Integrator::leapfrog;
     scratch.parameters.work_lag = leapfrog ? 0 : scratch.parameters.lag;
     const Real now = world.clock.time;
     scratch.parameters.intervals = {.begin = now - scratch.parameters.lag,
-                                    .length = scratch.parameters.kick,
+                                    .length = scratch.parameters.kick_time,
                                     .begin_implicit = leapfrog ? now - plan.h / 2 : now,
                                     .length_implicit = plan.h};
     scratch.parameters.let_invert =
@@ -334,9 +334,10 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
-    if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
+    if (world.ranks.on() && ran && !scratch.skipped)
+        world.ranks.label_rounds.note(world.ranks.all_findings.label_rounds);
     const StepOutcome outcome =
-        judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists, plan, attempt);
+        judge(scratch, world.ranks.all_findings.again_over_ranks(), world.cache.crossings.beyond_lists, plan, attempt);
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);

@@ -21,16 +21,17 @@ void keep_column(std::span<const T> from, Column<T>& to) {
     std::copy(from.begin(), from.end(), to.begin());
 }
 
-/// Replaces each entry of `place`, a row of `contacts`, by the index of this contact in the list that World::contacts()
-/// returns. This list also contains contacts of sleeping bodies.
-void number_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
+/// Replaces each entry of `contact_indices`, a row of `contacts`, by the index of this contact in the list that
+/// World::contacts() returns. This list also contains contacts of sleeping bodies.
+void number_as_in_view(const ContactTable& contacts, const RestingContactTable& resting,
+                       std::vector<Index>& contact_indices) {
     if (resting.empty()) return;
     Column<Index> rows;
     merge_contacts(contacts, resting, rows);
-    std::vector<Index> place_of(contacts.size());
+    std::vector<Index> index_of(contacts.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-        if (rows[i] >= 0) place_of[static_cast<std::size_t>(rows[i])] = static_cast<Index>(i);
-    for (Index& row : place) row = place_of[static_cast<std::size_t>(row)];
+        if (rows[i] >= 0) index_of[static_cast<std::size_t>(rows[i])] = static_cast<Index>(i);
+    for (Index& row : contact_indices) row = index_of[static_cast<std::size_t>(row)];
 }
 
 /// Directions in which attachments hold nodes. `entries`: entries of AttachmentTable::node to include, which are those
@@ -87,7 +88,7 @@ void show_contact_problem(const WorldState& world, Real time) {
     StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region, equations},
                                        scratch.parameters.solver, scratch.parameters.h);
     if (problem.problem.q.empty()) return;
-    number_among_all(c, world.cache.resting, problem.contact);
+    number_as_in_view(c, world.cache.resting, problem.contact);
     problem.step = record.counters.steps;
     problem.time = time;
     problem.step_size = scratch.parameters.h;

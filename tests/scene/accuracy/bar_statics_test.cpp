@@ -288,14 +288,14 @@ TEST_CASE("a bar that is loaded, unloaded and loaded again follows the curve of 
     Motion pull{.keys = {{.time = 0}}};
     for (const State& state : states) {
         const MotionKey start = pull.keys.back();
-        const Vec3 way = Vec3(size * (state.stretch() - 1), 0, 0) - start.position;
+        const Vec3 displacement = Vec3(size * (state.stretch() - 1), 0, 0) - start.position;
         constexpr int parts = 20;
         for (int k = 1; k <= parts; ++k) {  // starts and ends slowly, because vibrations would cause more flow
             const Real t = static_cast<Real>(k) / parts;
             pull.keys.push_back(
-                {.time = start.time + t * phase, .position = start.position + t * t * (3 - 2 * t) * way});
+                {.time = start.time + t * phase, .position = start.position + t * t * (3 - 2 * t) * displacement});
         }
-        pull.keys.push_back({.time = start.time + phase + rest, .position = start.position + way});
+        pull.keys.push_back({.time = start.time + phase + rest, .position = start.position + displacement});
     }
     const std::vector<Vec3> along{Vec3::UnitX()};
     world.attach(bar, end[0], Motion{}, Vec3::Zero(), along);

@@ -58,22 +58,23 @@ TEST_CASE("a thick hollow sphere widens under pressure from inside", "[scene][ac
                           {0.499, ElementKind::linear, 0.31, 0.5},
                           {0.499, ElementKind::smoothed, 0.01, 0.04}}) {
         const Widened found = widen(c.kind, c.nu);
-        const std::string which =
+        const std::string case_text =
             ", Poisson ratio " + std::to_string(c.nu).substr(0, 5) + ", " + std::string(name_of(c.kind));
         accuracy::check(
             {.item = 37,
-             .name = "hollow sphere under pressure, displacement inside (m)" + which,
+             .name = "hollow sphere under pressure, displacement inside (m)" + case_text,
              .formula = "p a^3 / (E (b^3 - a^3)) ((1 - 2 nu) a + (1 + nu) b^3 / (2 a^2))",
              .expected = mean_stress / modulus * ((1 - 2 * c.nu) * inner + (1 + c.nu) * b3 / (2 * inner * inner)),
              .found = found.displacement,
              .tolerance = c.tolerance});
-        accuracy::check({.item = 37,
-                         .name = "the same, mean stress of the nodes over p, root of the mean squared error" + which,
-                         .formula = "tr(sigma) / 3 = p a^3 / (b^3 - a^3), error",
-                         .expected = 0,
-                         .found = found.pressure,
-                         .tolerance = c.of_pressure,
-                         .kind = accuracy::Tolerance::absolute});
+        accuracy::check(
+            {.item = 37,
+             .name = "the same, mean stress of the nodes over p, root of the mean squared error" + case_text,
+             .formula = "tr(sigma) / 3 = p a^3 / (b^3 - a^3), error",
+             .expected = 0,
+             .found = found.pressure,
+             .tolerance = c.of_pressure,
+             .kind = accuracy::Tolerance::absolute});
     }
 }
 

@@ -53,20 +53,21 @@ TEST_CASE("an implicit block on an incline obeys Coulomb's law at any stiffness 
         Real modulus;
         const char* name;
     };
-    for (const Case& of : {Case{1e6, "1e6"}, Case{1e7, "1e7"}, Case{1e9, "1e9"}, Case{2e11, "2e11"}})
+    for (const Case& test_case : {Case{1e6, "1e6"}, Case{1e7, "1e7"}, Case{1e9, "1e9"}, Case{2e11, "2e11"}})
         for (const Real h : {1.0 / 60, 1.0 / 1000}) {
-            const std::string with = std::string(", E = ") + of.name + (h < 0.01 ? ", h = 1/1000 s" : ", h = 1/60 s");
+            const std::string with =
+                std::string(", E = ") + test_case.name + (h < 0.01 ? ", h = 1/1000 s" : ", h = 1/60 s");
             accuracy::check({.item = 47,
                              .name = "implicit block 0.1 degree below critical, slip in 1 s (m)" + with,
                              .formula = "0 while tan(a) <= mu",
-                             .found = slide_of(of.modulus, mu, critical - 0.1, h).moved,
+                             .found = slide_of(test_case.modulus, mu, critical - 0.1, h).moved,
                              .tolerance = 1e-9,
                              .kind = Tolerance::absolute});
             accuracy::check({.item = 47,
                              .name = "implicit block 0.1 degree above critical, acceleration (m/s^2)" + with,
                              .formula = "g (sin(a) - mu cos(a))",
                              .expected = g * (std::sin(a) - mu * std::cos(a)),
-                             .found = slide_of(of.modulus, mu, critical + 0.1, h).gained,
+                             .found = slide_of(test_case.modulus, mu, critical + 0.1, h).gained,
                              .tolerance = 1e-3});
         }
 }

@@ -53,10 +53,10 @@ TEST_CASE("a block sticks a hundredth of a degree below the friction angle, with
         REQUIRE(scene.world.advance(3.0).ok());
         const Vec3 start = scene.world.center_of_mass(scene.block);
         REQUIRE(scene.world.advance(1.0).ok());
-        const std::string how = ", regions " + std::string(name_of(regions));
+        const std::string regions_text = ", regions " + std::string(name_of(regions));
         const Real slip = (scene.world.center_of_mass(scene.block) - start).norm();
         accuracy::check({.item = 6,
-                         .name = "incline 0.01 degree below critical, slip in 1 s (m)" + how,
+                         .name = "incline 0.01 degree below critical, slip in 1 s (m)" + regions_text,
                          .formula = "0 while tan(a) <= mu",
                          .found = slip,
                          .tolerance = 1e-6,
@@ -64,7 +64,7 @@ TEST_CASE("a block sticks a hundredth of a degree below the friction angle, with
         Real creep = slip / 1.0;
         for (const Vec3& v : scene.world.velocities(scene.block)) creep = std::max(creep, v.norm());
         accuracy::check({.item = 6,
-                         .name = "the same, creep: fastest node, or mean over 1 s (m/s)" + how,
+                         .name = "the same, creep: fastest node, or mean over 1 s (m/s)" + regions_text,
                          .formula = "0 while tan(a) <= mu",
                          .found = creep,
                          .tolerance = 1e-9,

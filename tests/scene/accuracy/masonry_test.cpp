@@ -132,11 +132,11 @@ TEST_CASE("an arch of rigid stones stands while a line of thrust fits into it", 
         int stones;
         Real share;
     };
-    for (const Case& of : {Case{8, 1.01}, Case{8, 0.99}, Case{12, 1.03}, Case{12, 0.97}}) {
-        const Real down = sunk({of.stones, of.share * thinnest(of.stones)});
-        const std::string name = "arch of " + std::to_string(of.stones) + " rigid stones, " +
-                                 std::to_string(of.share).substr(0, 4) + " of the least thickness, ";
-        if (of.share > 1)
+    for (const Case& test_case : {Case{8, 1.01}, Case{8, 0.99}, Case{12, 1.03}, Case{12, 0.97}}) {
+        const Real down = sunk({test_case.stones, test_case.share * thinnest(test_case.stones)});
+        const std::string name = "arch of " + std::to_string(test_case.stones) + " rigid stones, " +
+                                 std::to_string(test_case.share).substr(0, 4) + " of the least thickness, ";
+        if (test_case.share > 1)
             accuracy::check({.item = 50,
                              .name = name + "crown sunk in 1 s (m)",
                              .formula = "0 while a line of thrust fits",

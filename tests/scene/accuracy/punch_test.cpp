@@ -97,16 +97,16 @@ TEST_CASE("a rigid flat punch is pressed into a block", "[scene][accuracy]") {
                           {0.49, nearly_incompressible, ElementKind::linear, 1.4, 0.08},
                           {0.49, nearly_incompressible, ElementKind::smoothed, 0.18, 0.03}}) {
         const Pressed found = press(c.kind, c.nu);
-        const std::string which =
+        const std::string case_text =
             ", Poisson ratio " + std::to_string(c.nu).substr(0, 4) + ", " + std::string(name_of(c.kind));
         accuracy::check({.item = 38,
-                         .name = "flat punch on a block, force over E, width and displacement" + which,
+                         .name = "flat punch on a block, force over E, width and displacement" + case_text,
                          .formula = "fine mesh of quadratic elements",
                          .expected = c.expected,
                          .found = found.stiffness,
                          .tolerance = c.tolerance});
         accuracy::check({.item = 38,
-                         .name = "the same, roughness of the pressure" + which,
+                         .name = "the same, roughness of the pressure" + case_text,
                          .formula = "0",
                          .expected = 0,
                          .found = found.roughness,

@@ -191,9 +191,9 @@ TEST_CASE("rigid bricks overhang as far as the harmonic series lets them", "[sce
         for (int k = 0; k < bricks; ++k)
             lowest =
                 std::min(lowest, world.center_of_mass(stack[static_cast<std::size_t>(k)]).z() / ((k + 0.5) * height));
-        const std::string how = share < 1 ? "0.99" : "1.01";
+        const std::string outcome_text = share < 1 ? "0.99" : "1.01";
         accuracy::check({.item = 44,
-                         .name = "four rigid bricks, each shifted by " + how + " L/(2 k), one fell within 3 s",
+                         .name = "four rigid bricks, each shifted by " + outcome_text + " L/(2 k), one fell within 3 s",
                          .formula = "stands up to L/(2 k)",
                          .expected = share < 1 ? 0.0 : 1.0,
                          .found = lowest < 0.9 ? 1.0 : 0.0,

@@ -33,7 +33,7 @@ void push(BlockOnPlane& scene, const Vec3& velocity) {
 }
 
 struct Stop {
-    Vec3 way;   // m
+    Vec3 path;  // m
     Real time;  // s
     Real step;  // s
 };
@@ -62,7 +62,7 @@ TEST_CASE("a sliding plate stops after v^2 / (2 mu g)", "[scene][accuracy]") {
                      .name = "sliding stop, distance (m)",
                      .formula = "v0^2 / (2 mu g), tolerance v0 h",
                      .expected = v0 * v0 / (2 * mu * g),
-                     .found = stop.way.norm(),
+                     .found = stop.path.norm(),
                      .tolerance = v0 * stop.step,
                      .kind = Tolerance::absolute});
     accuracy::check({.item = 7,
@@ -135,7 +135,7 @@ TEST_CASE("the pyramid stops a plate on the diagonal with sqrt(2) mu N", "[scene
                      .name = "pyramid, sliding stop at 45 degrees (m)",
                      .formula = "v0^2 / (2 sqrt(2) mu g), tolerance v0 h",
                      .expected = v0 * v0 / (2 * std::numbers::sqrt2 * mu * g),
-                     .found = stop.way.norm(),
+                     .found = stop.path.norm(),
                      .tolerance = v0 * stop.step,
                      .kind = Tolerance::absolute});
 }

@@ -18,9 +18,9 @@ constexpr Real modulus = 1e6, length = 1, height = 0.1;  // Pa, m, m
 Mesh moved(Mesh mesh, Real cell, Real share) {
     std::mt19937_64 random(1);
     for (Vec3& x : mesh.nodes) {
-        const Vec3 way = share * cell * random_vector(random), half = 0.5 * Vec3(length, height, height);
+        const Vec3 displacement = share * cell * random_vector(random), half = 0.5 * Vec3(length, height, height);
         for (int i = 0; i < 3; ++i)
-            if (std::abs(x[i]) < half[i] - 1e-9) x[i] += way[i];
+            if (std::abs(x[i]) < half[i] - 1e-9) x[i] += displacement[i];
     }
     const MeshReport report = inspect(mesh);
     REQUIRE(report.inverted + report.flat == 0);

@@ -27,9 +27,9 @@ Fate fate(Real degrees, Real mu) {
     scene.settle(0.2, 0.5);
     const Vec3 start = scene.world.center_of_mass(scene.block);
     REQUIRE(scene.world.advance(2.0).ok());
-    const Vec3 way = scene.world.center_of_mass(scene.block) - start;
-    if (std::abs(way.z()) > 0.1 * b) return Fate::topples;
-    return way.norm() > 0.1 * b ? Fate::slides : Fate::rests;
+    const Vec3 displacement = scene.world.center_of_mass(scene.block) - start;
+    if (std::abs(displacement.z()) > 0.1 * b) return Fate::topples;
+    return displacement.norm() > 0.1 * b ? Fate::slides : Fate::rests;
 }
 
 }  // namespace

@@ -297,7 +297,7 @@ TEST_CASE("a body that becomes rigid in a stack carries and is carried, without 
 
 TEST_CASE("a world in which bodies changed their kind continues bitwise, on any number of threads and from a file",
           "[determinism]") {
-    const auto course = [](int threads) {
+    const auto simulate = [](int threads) {
         Bar bar(Bar::two_materials, {.young_modulus = 1e6, .poisson_ratio = 0.3, .density = density}, threads,
                 {0, 0, -standard_gravity});
         bar.world.add_collider(Plane{.point = {0, 0, 2.8}});
@@ -307,7 +307,7 @@ TEST_CASE("a world in which bodies changed their kind continues bitwise, on any 
         bar.world.set_dynamics(bar.body, deformable);
         return bar;
     };
-    check_same_bits(course, [](World& world) {
+    check_same_bits(simulate, [](World& world) {
         const BodyHandle body = world.bodies().back();
         world.set_dynamics(body, rigid);
         REQUIRE(world.advance(0.05).ok());

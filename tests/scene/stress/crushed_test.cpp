@@ -68,7 +68,7 @@ int tries(const Course& course) {
 }
 
 /// Checks that the body has recovered after a disturbance, and compares the cost with an undisturbed run.
-void judge_return(int item, const std::string& scene, OneBody& of, const Course& course, const Course& undisturbed,
+void judge_return(int item, const std::string& scene, OneBody& tested, const Course& course, const Course& undisturbed,
                   Real edge, Real times) {
     judge({item, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
            course.ok && course.finite});
@@ -76,9 +76,9 @@ void judge_return(int item, const std::string& scene, OneBody& of, const Course&
     at_most(item, scene, "regions not converged", static_cast<Real>(course.unconverged), 0);
     at_most(item, scene, "steps and tries, times those without",
             static_cast<Real>(tries(course)) / static_cast<Real>(tries(undisturbed)), times);
-    of.stop();
-    at_most(item, scene, "inverted elements at the end", inverted_share(of.world, of.body), 0);
-    at_most(item, scene, "out of shape at the end / edge", of.out_of_shape() / edge, 0.01);
+    tested.stop();
+    at_most(item, scene, "inverted elements at the end", inverted_share(tested.world, tested.body), 0);
+    at_most(item, scene, "out of shape at the end / edge", tested.out_of_shape() / edge, 0.01);
 }
 
 /// A torus: a plate with a round hole and a round rim. Only part of it is needed.

@@ -25,25 +25,25 @@ struct Refusal {
 
 /// Describes the fault of the refusal, or returns an empty string.
 std::string wrong_with(const Refusal& refusal) {
-    const std::string who = refusal.object + "." + refusal.field;
+    const std::string object_and_field = refusal.object + "." + refusal.field;
     try {
         refusal.call();
     } catch (const SceneError& error) {
         const std::string message = error.what();
         for (const std::string& part : {refusal.object, refusal.field})
             if (message.find(part) == std::string::npos)
-                return who + ": '" + message + "' does not name " + part + "; ";
+                return object_and_field + ": '" + message + "' does not name " + part + "; ";
         return {};
     } catch (const std::exception& error) {
-        return who + ": another exception: " + error.what() + "; ";
+        return object_and_field + ": another exception: " + error.what() + "; ";
     }
-    return who + ": taken; ";
+    return object_and_field + ": taken; ";
 }
 
-void judge_refusals(const std::string& what, const std::vector<Refusal>& refusals) {
+void judge_refusals(const std::string& item, const std::vector<Refusal>& refusals) {
     std::string wrong;
     for (const Refusal& refusal : refusals) wrong += wrong_with(refusal);
-    judge({18, what + ": " + std::to_string(refusals.size()) + " bad values", "all refused, object and field named",
+    judge({18, item + ": " + std::to_string(refusals.size()) + " bad values", "all refused, object and field named",
            wrong.empty() ? "all" : wrong, wrong.empty()});
 }
 

@@ -44,11 +44,11 @@ struct LetGo {
         judge({item, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
                course.ok && course.finite});
         at_most(item, scene, "energy gained / in play", course.gained / energy, 1e-2);
-        const Real left = world.energy().elastic / energy;
-        const bool recovered = left < 1e-3 && inverted_share(world, body) == 0;
+        const Real remaining_energy = world.energy().elastic / energy;
+        const bool recovered = remaining_energy < 1e-3 && inverted_share(world, body) == 0;
         judge({item, scene + ", 2 s later",
                must_recover ? "recovers: no element inverted, energy gone" : "recovers or stays finite",
-               recovered ? "recovers" : "stays collapsed with " + text(100 * left) + " % of the energy",
+               recovered ? "recovers" : "stays collapsed with " + text(100 * remaining_energy) + " % of the energy",
                recovered || !must_recover});
     }
 };

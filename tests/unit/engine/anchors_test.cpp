@@ -21,7 +21,7 @@ struct Anchors {
     World& world;
     AnchorColumns columns;
 
-    explicit Anchors(World& of) : world(of) {}
+    explicit Anchors(World& anchored_world) : world(anchored_world) {}
 
     std::size_t add(const Anchor& anchor) {
         const std::size_t row = columns.body.size();

@@ -242,41 +242,41 @@ class BadInputsTest(ProgramCase):
     def outputs(self):
         return ["--out", "frames", "--stats", "s.json", "--page", "p.html", "--seconds", "0.01"]
 
-    def assert_answered(self, *arguments, said):
-        done = self.assert_refused(*arguments, said=said)
+    def assert_answered(self, *arguments, message):
+        done = self.assert_refused(*arguments, message=message)
         self.assertNotIn("terminate called", done.stderr)
         self.assertNotIn("[json.exception", done.stderr)
         return done
 
     def test_bad_values_of_scenes_are_named(self):
-        for name, place, value, said in SCENES:
+        for name, place, value, message in SCENES:
             with self.subTest(name):
                 scene = copy.deepcopy(BASE)
                 put(scene, place, value)
                 self.write("bad.json", scene)
                 done = self.assert_answered("run", "bad.json", *(self.outputs() if place not in ("seconds",) else []),
-                                            said=said)
+                                            message=message)
                 self.assertIn("bad.json", done.stderr)
                 self.assertIn("found", done.stderr)
                 self.assertIn("expected", done.stderr)
                 self.assertEqual(done.stderr.count("\n"), 1)
 
     def test_steps_that_cannot_be_taken_end_with_one_and_say_whose_fault_it_is(self):
-        for name, place, value, said in STEPS:
+        for name, place, value, message in STEPS:
             with self.subTest(name):
                 scene = copy.deepcopy(BASE)
                 put(scene, place, value)
                 done = self.skerry("run", self.write("bad.json", scene), "--seconds", "0.01", "--quiet", code=1)
-                for word in ("the step was not taken", *said):
+                for word in ("the step was not taken", *message):
                     self.assertIn(word, done.stderr)
 
     def test_files_that_are_no_scenes_are_named(self):
-        for name, content, said in FILES:
+        for name, content, message in FILES:
             with self.subTest(name):
                 (self.folder / "bad.json").write_bytes(content)
-                done = self.assert_answered("run", "bad.json", *self.outputs(), said=said)
+                done = self.assert_answered("run", "bad.json", *self.outputs(), message=message)
                 self.assertEqual(done.stderr.count("\n"), 1)
-                self.assert_answered("inspect", "bad.json", said=said)
+                self.assert_answered("inspect", "bad.json", message=message)
 
     def test_bad_commands_are_named(self):
         scene = copy.deepcopy(BASE)
@@ -284,9 +284,9 @@ class BadInputsTest(ProgramCase):
         scene["probes"] = [{"name": "energy", "quantity": "energy"}]
         self.write("good.json", scene)
         names = {"SCENE": "good.json", "PLAIN": "plain.json"}
-        for name, arguments, said in COMMANDS:
+        for name, arguments, message in COMMANDS:
             with self.subTest(name):
-                self.assert_answered(*[names.get(argument, argument) for argument in arguments], said=said)
+                self.assert_answered(*[names.get(argument, argument) for argument in arguments], message=message)
 
 
 if __name__ == "__main__":

@@ -200,9 +200,9 @@ class CheckpointTest(ProgramCase):
                                "--every", "0.05"], capture_output=True, text=True, timeout=300, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
         self.assertEqual(done.returncode, 0, done.stderr)
-        said = (r"the checkpoint at 0.[0-9]* s could not be written: .*run.skerry.*enough space for the whole file "
+        message = (r"the checkpoint at 0.[0-9]* s could not be written: .*run.skerry.*enough space for the whole file "
                 r"\(free disk space or choose another path\); the run continues")
-        self.assertEqual(len(re.findall(said, done.stderr)), 4, done.stderr)
+        self.assertEqual(len(re.findall(message, done.stderr)), 4, done.stderr)
         found = json.loads(stats.read_text())
         self.assertEqual(found["checkpoints"], {"written": 0, "failed": 4})
         self.same_run(found, expected)
@@ -212,21 +212,21 @@ class CheckpointTest(ProgramCase):
     def test_a_restart_from_something_else_is_refused(self):
         checkpoint = self.folder / "run.skerry"
         self.run_stats(self.scene, "--checkpoint", checkpoint)
-        self.assert_refused("run", "--restart", checkpoint, said=["a checkpoint at 0.2 s", "a larger --seconds"])
-        self.assert_refused("run", "--restart", self.scene, said=["drop.json", "a file of another kind"])
-        self.assert_refused("run", "--restart", self.folder / "none", said=["no such file"])
+        self.assert_refused("run", "--restart", checkpoint, message=["a checkpoint at 0.2 s", "a larger --seconds"])
+        self.assert_refused("run", "--restart", self.scene, message=["drop.json", "a file of another kind"])
+        self.assert_refused("run", "--restart", self.folder / "none", message=["no such file"])
         for option, value in (("--step", 1e-5), ("--max-iterations", 9), ("--start-overlaps", "ignore")):
-            self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.3, option, value, said=[option])
-        self.assert_refused("run", "--every", 1, self.scene, said=["--checkpoint"])
-        self.assert_refused("run", said=["SCENE"])
-        self.assert_refused("run", self.scene, "--checkpoint", self.scene, said=["the same file as the scene"])
+            self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.3, option, value, message=[option])
+        self.assert_refused("run", "--every", 1, self.scene, message=["--checkpoint"])
+        self.assert_refused("run", message=["SCENE"])
+        self.assert_refused("run", self.scene, "--checkpoint", self.scene, message=["the same file as the scene"])
         damaged = bytearray(checkpoint.read_bytes())
         damaged[len(damaged) // 2] ^= 16
         broken = self.folder / "broken.skerry"
         broken.write_bytes(damaged)
-        self.assert_refused("run", "--restart", broken, said=["broken.skerry", "checksum", "damaged"])
+        self.assert_refused("run", "--restart", broken, message=["broken.skerry", "checksum", "damaged"])
         other = self.write("other.json", dict(SCENE, bodies=[dict(SCENE["bodies"][0], name="brick")], probes=[]))
-        self.assert_refused("run", other, "--restart", checkpoint, said=['body "block"', '"brick"', "has changed"])
+        self.assert_refused("run", other, "--restart", checkpoint, message=['body "block"', '"brick"', "has changed"])
 
 
 if __name__ == "__main__":

@@ -360,21 +360,21 @@ TEST_CASE("surfaces with the faults of users' files are filled with the volume o
     // fTetWild fills the surfaces with faults if SKERRY_FILL_PYTHON names an interpreter that has it.
     std::vector<CorpusSurface> corpus = surface_corpus();
     if (!full_tests()) corpus.resize(1);
-    for (const CorpusSurface& of : corpus) {
-        INFO(of.name);
+    for (const CorpusSurface& sample : corpus) {
+        INFO(sample.name);
         try {
-            const mesh::FilledMesh filled = mesh::fill(of.surface, of.name);
+            const mesh::FilledMesh filled = mesh::fill(sample.surface, sample.name);
             const MeshReport report = inspect(filled.mesh);
             CHECK(report.inverted + report.flat == 0);
             // fTetWild moves the surface by up to the tolerance.
             const Real surface = mesh::area_of(filled.surface.cleaned);
             const Real rounding = 1e-6 * report.volume;
-            if (of.volume)
-                CHECK(std::abs(report.volume - *of.volume) <=
+            if (sample.volume)
+                CHECK(std::abs(report.volume - *sample.volume) <=
                       (filled.exact ? 0 : filled.tolerance * surface) + rounding);
         } catch (const SceneError& error) {
-            CHECK_THAT(error.what(), Contains(of.name));
-            CHECK_FALSE(mesh::check_surface(of.surface).can_be_filled());
+            CHECK_THAT(error.what(), Contains(sample.name));
+            CHECK_FALSE(mesh::check_surface(sample.surface).can_be_filled());
         }
     }
 }

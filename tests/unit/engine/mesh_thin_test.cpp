@@ -72,9 +72,9 @@ struct Strip {
         World world(settings);
         BodySettings body{.dynamics = BodyDynamics::implicit_elastic, .element = kind};
         std::vector<MaterialHandle> handles;
-        for (const mesh::ElasticConstants& of : material)
-            handles.push_back(world.add_material({.young_modulus = of.young_modulus,
-                                                  .poisson_ratio = of.poisson_ratio,
+        for (const mesh::ElasticConstants& constants : material)
+            handles.push_back(world.add_material({.young_modulus = constants.young_modulus,
+                                                  .poisson_ratio = constants.poisson_ratio,
                                                   .density = density,
                                                   .loss_factor = 0,
                                                   .bulk_viscosity = 0,

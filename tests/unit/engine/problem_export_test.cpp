@@ -290,12 +290,12 @@ TEST_CASE("joints, ties, rollers and cables are eliminated from problems, and th
     const auto rubber = world.add_material({.young_modulus = 2e4, .density = 500});
     world.add_collider(Plane{});
     const Mesh block = mesh::box({0.2, 0.2, 0.1}, {2, 2, 1});
-    const auto add = [&](Real x, Real z, BodyDynamics of) {
+    const auto add = [&](Real x, Real z, BodyDynamics dynamics) {
         return world.add_body(block, {.material = rubber,
                                       .position = {x, 0, z},
                                       .velocity = {0.3, 0, -0.5},
                                       .contact_distance = 0.002,
-                                      .dynamics = of});
+                                      .dynamics = dynamics});
     };
     constexpr Real low = 0.052, high = 0.155;  // [m]
     const BodyHandle tied = add(1, low, soft), joined = add(2, low, BodyDynamics::rigid),

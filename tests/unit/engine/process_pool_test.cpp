@@ -17,17 +17,17 @@ namespace skerry::test::process_pool_test {
 
 namespace {
 
-struct Told {
+struct PoolResult {
     skerry::PoolEnd end;
     int most_running = 0;
 };
 
-Told run(int count, int at_once, skerry::FunctionRef<int(int)> job, bool after_failure = true) {
-    Told told;
+PoolResult run(int count, int at_once, skerry::FunctionRef<int(int)> job, bool after_failure = true) {
+    PoolResult result;
     const auto goes_on = [&](int, int code) { return after_failure || code == 0; };
-    const auto show = [&](int, int running) { told.most_running = std::max(told.most_running, running); };
-    told.end = skerry::run_in_processes(count, at_once, {job, goes_on, show});
-    return told;
+    const auto show = [&](int, int running) { result.most_running = std::max(result.most_running, running); };
+    result.end = skerry::run_in_processes(count, at_once, {job, goes_on, show});
+    return result;
 }
 
 /// Waits up to a minute for a file. Returns false if it does not appear.
@@ -56,10 +56,10 @@ TEST_CASE("every job runs once, so many at a time", "[unit][processes]") {
         std::filesystem::remove(mark);
         return 0;
     };
-    const Told told = run(20, 3, job);
-    CHECK(told.end.done == 20);
-    CHECK(told.end.lost.empty());
-    CHECK(told.most_running <= 3);
+    const PoolResult result = run(20, 3, job);
+    CHECK(result.end.done == 20);
+    CHECK(result.end.lost.empty());
+    CHECK(result.most_running <= 3);
     for (int i = 0; i < 20; ++i) {
         std::string text;
         std::ifstream(folder.path() / std::to_string(i)) >> text;
@@ -73,18 +73,18 @@ TEST_CASE("a job that ends badly, by itself or by a signal, takes no other with 
         if (index == 1) raise(SIGKILL);
         return index == 3 ? 7 : 0;
     };
-    const Told told = run(6, 2, job);
-    CHECK(told.end.done == 4);
-    REQUIRE(told.end.lost.size() == 2);
-    for (const auto& [index, how] : told.end.lost)
+    const PoolResult result = run(6, 2, job);
+    CHECK(result.end.done == 4);
+    REQUIRE(result.end.lost.size() == 2);
+    for (const auto& [index, how] : result.end.lost)
         CHECK_THAT(how, Catch::Contains(index == 1 ? "signal 9" : "ended with exit code 7"));
 }
 
 TEST_CASE("no job begins after one that says so", "[unit][processes]") {
-    const Told told = run(
+    const PoolResult result = run(
         100, 1, [](int index) { return index == 4 ? 3 : 0; }, false);
-    CHECK(told.end.done == 4);
-    CHECK(told.end.lost.size() == 1);
+    CHECK(result.end.done == 4);
+    CHECK(result.end.lost.size() == 1);
 }
 
 TEST_CASE("a signal ends the running jobs, and no job starts after it", "[unit][processes]") {
@@ -96,13 +96,13 @@ TEST_CASE("a signal ends the running jobs, and no job starts after it", "[unit][
         if (index > 0) pause();
         return 0;
     };
-    const Told told = run(100, 2, job);
-    CHECK(told.end.signal == SIGINT);
-    CHECK(told.end.lost.empty());
+    const PoolResult result = run(100, 2, job);
+    CHECK(result.end.signal == SIGINT);
+    CHECK(result.end.lost.empty());
     // Job 0 may have ended before the signal, so that a third job started.
-    CHECK(told.end.done <= 1);
-    CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) >= 2);
-    CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) <= 3);
+    CHECK(result.end.done <= 1);
+    CHECK(result.end.done + static_cast<int>(result.end.stopped.size()) >= 2);
+    CHECK(result.end.done + static_cast<int>(result.end.stopped.size()) <= 3);
 }
 
 }  // namespace skerry::test::process_pool_test

@@ -51,11 +51,11 @@ class ProgramCase(unittest.TestCase):
             line = process.stderr.readline()
         return process
 
-    def assert_refused(self, *arguments, said):
+    def assert_refused(self, *arguments, message):
         """Exit code 2, one line on standard error, nothing on standard output, no file that was not there."""
         before = sorted(self.folder.rglob("*"))
         done = self.skerry(*arguments, code=2)
-        for part in said:
+        for part in message:
             self.assertIn(part, done.stderr)
         self.assertEqual(done.stdout, "")
         self.assertEqual(sorted(self.folder.rglob("*")), before)

@@ -56,21 +56,21 @@ class FillTest(ProgramCase):
         # The engine rounds the position to three digits upwards.
         self.assertAlmostEqual(json.loads(scene.read_text())["bodies"][0]["position"][2], 0.5, places=2)
         self.skerry("run", scene, "--seconds", 0.05)
-        said = self.skerry("fill", self.cube, out).stdout
+        output = self.skerry("fill", self.cube, out).stdout
         for part in ("Netgen", "volume", "the surface is unchanged", "quality", "stable with", "written"):
-            self.assertIn(part, said)
+            self.assertIn(part, output)
 
     def test_a_surface_in_millimetres_is_scaled(self):
         self.need_netgen()
         out, scene = self.folder / "cube.msh", self.folder / "drop.json"
-        said = self.skerry("fill", self.cube, out, "--scene", scene, "--scale", 0.001, "--edge", 0.0011).stdout
-        self.assertIn("the surface is unchanged", said)
+        output = self.skerry("fill", self.cube, out, "--scene", scene, "--scale", 0.001, "--edge", 0.0011).stdout
+        self.assertIn("the surface is unchanged", output)
         found = json.loads(self.skerry("inspect", out, "--json").stdout)
         self.assertAlmostEqual(found["volume"] * 1e9, 1, places=12)
         visual = json.loads(scene.read_text())["bodies"][0]["visual"]
         self.assertEqual(visual, {"file": "cube.obj", "scale": 0.001})
         self.skerry("run", scene, "--seconds", 0.001)
-        self.assert_refused("fill", self.cube, out, "--scale", 0.001, "--edge", 1.1, said=["edge", "after scaling"])
+        self.assert_refused("fill", self.cube, out, "--scale", 0.001, "--edge", 1.1, message=["edge", "after scaling"])
 
     def test_the_example_of_a_filled_surface_runs(self):
         self.need_netgen()
@@ -83,21 +83,21 @@ class FillTest(ProgramCase):
         surface, out = self.write("open.obj", OPEN_CUBE), self.folder / "out.msh"
         arguments = ["fill", surface, out, "--scene", self.folder / "out.json"]
         self.stub("exec sleep 100")
-        self.assert_refused(*arguments, "--time-limit", 0.1, said=["open.obj", "time limit of 0.1 s"])
+        self.assert_refused(*arguments, "--time-limit", 0.1, message=["open.obj", "time limit of 0.1 s"])
         self.stub("kill -SEGV $$")
-        self.assert_refused(*arguments, said=["open.obj", "crashed"])
+        self.assert_refused(*arguments, message=["open.obj", "crashed"])
         self.stub("echo 3 >&3")
-        self.assert_refused(*arguments, said=["not a valid mesh"])
+        self.assert_refused(*arguments, message=["not a valid mesh"])
         self.stub("exit 3")
-        self.assert_refused(*arguments, said=["pip install wildmeshing"])
-        self.assert_refused(*arguments, "--tolerance", 0, said=["tolerance above 0"])
+        self.assert_refused(*arguments, message=["pip install wildmeshing"])
+        self.assert_refused(*arguments, "--tolerance", 0, message=["tolerance above 0"])
 
     def test_wrong_arguments_are_refused(self):
-        self.assert_refused("fill", self.cube, self.folder / "out.vtk", said=["out.vtk", ".msh"])
-        self.assert_refused("fill", self.folder / "none.obj", self.folder / "out.msh", said=["none.obj"])
-        self.assert_refused("fill", self.cube, self.folder / "out.msh", "--material", "cheese", said=["cheese"])
+        self.assert_refused("fill", self.cube, self.folder / "out.vtk", message=["out.vtk", ".msh"])
+        self.assert_refused("fill", self.folder / "none.obj", self.folder / "out.msh", message=["none.obj"])
+        self.assert_refused("fill", self.cube, self.folder / "out.msh", "--material", "cheese", message=["cheese"])
         self.assert_refused("fill", self.cube, self.cube.with_suffix(".msh"), "--scene",
-                            self.cube.with_suffix(".msh"), said=["--scene"])
+                            self.cube.with_suffix(".msh"), message=["--scene"])
         self.skerry("fill", self.cube, code=2)
         self.skerry("fill", self.cube, self.folder / "out.msh", "--edge", 0, code=2)
 
@@ -140,18 +140,18 @@ class FillTest(ProgramCase):
                 cached.unlink()
             mesh_text = f"4 1\\n0 0 0\\n{size} 0 0\\n0 {size} 0\\n0 0 {size}\\n0 1 2 3\\n"
             self.stub(f"head -n 1 > {given}\ncat > /dev/null\nprintf '{mesh_text}' >&3")
-            said = self.skerry("inspect", scene, "--json", code=code)
+            output = self.skerry("inspect", scene, "--json", code=code)
             if code == 0:
-                self.assertEqual(json.loads(said.stdout)["body_kinds"][0]["mesh"]["tetrahedra"], 1)
+                self.assertEqual(json.loads(output.stdout)["body_kinds"][0]["mesh"]["tetrahedra"], 1)
             else:
-                self.assertIn("refine: found a mesh with a mean edge of 0.0121", said.stderr)
+                self.assertIn("refine: found a mesh with a mean edge of 0.0121", output.stderr)
         self.assertAlmostEqual(float(given.read_text().split()[2]), 2 * mean_edge, places=9)
 
     def test_keys_of_a_surface_need_a_surface(self):
         box = {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "edge": 0.1}
         body = {"mesh": box, "material": "rubber", "position": [0, 0, 2]}
         self.assert_refused("inspect", self.write("edge.json", {**SCENE, "bodies": [body], "probes": []}),
-                            said=["bodies[0].mesh", '"surface"'])
+                            message=["bodies[0].mesh", '"surface"'])
 
 
 if __name__ == "__main__":

@@ -51,9 +51,9 @@ class ProgramInspectTest(ProgramCase):
         found = json.loads(self.skerry("inspect", alone, "--json").stdout)
         self.assertAlmostEqual(found["stable_dt"], 1 / 120)
         self.assertGreaterEqual(found["steps"], 120 * SCENE["seconds"])
-        said = self.skerry("inspect", alone).stdout
-        self.assertIn("8.33 ms (no body limits the step)", said)
-        self.assertNotIn("inf", said.lower().replace("info", ""))
+        output = self.skerry("inspect", alone).stdout
+        self.assertIn("8.33 ms (no body limits the step)", output)
+        self.assertNotIn("inf", output.lower().replace("info", ""))
         self.assertNotIn("stable up to", self.skerry("run", alone).stdout)
 
     def test_implicit_bodies_run_and_set_no_step(self):
@@ -85,9 +85,10 @@ class ProgramInspectTest(ProgramCase):
         place = f"materials.{SCENE['bodies'][0]['material']}.E"
         stiff = json.loads(self.skerry("inspect", self.scene, "--json", "--set", f"{place}=1e9").stdout)
         self.assertLess(stiff["stable_dt"], written["stable_dt"])
-        self.assert_refused("inspect", self.scene, "--set", "materials.rubber.weight=1", said=["weight"])
+        self.assert_refused("inspect", self.scene, "--set", "materials.rubber.weight=1", message=["weight"])
         mesh = ROOT / "scenes/meshes/torus.msh"
-        self.assert_refused("inspect", mesh, "--set", f"{place}=1e9", said=["torus.msh", "--set", "a mesh", "a scene"])
+        self.assert_refused("inspect", mesh, "--set", f"{place}=1e9",
+                            message=["torus.msh", "--set", "a mesh", "a scene"])
 
     def test_inspect_reads_the_surfaces_of_colliders(self):
         corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
@@ -114,24 +115,25 @@ class ProgramInspectTest(ProgramCase):
                            "$Elements\n1\n1 2 0 1 2 3\n$EndElements\n")
         self.assertEqual(json.loads(self.skerry("inspect", in_gmsh, "--json").stdout)["triangles"], 1)
         (self.folder / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
-        self.assert_refused("inspect", self.folder / "bad.obj", said=["bad.obj", "face", "line 2"])
-        self.assert_refused("inspect", solid, "--repair", self.folder / "new.msh", said=["solid.obj", ".obj", ".vtu"])
+        self.assert_refused("inspect", self.folder / "bad.obj", message=["bad.obj", "face", "line 2"])
+        self.assert_refused("inspect", solid, "--repair", self.folder / "new.msh",
+                            message=["solid.obj", ".obj", ".vtu"])
 
     def test_a_large_scene_reports_its_set_up(self):
         block = dict(SCENE["bodies"][0], name="block", position=[0, 0, 1],
                      mesh={"box": {"size": [0.5, 0.5, 0.5], "cells": [26, 26, 26]}})
         scene = self.write("large.json", {**SCENE, "probes": [], "bodies": [block]})
-        said = self.skerry("inspect", scene)
+        output = self.skerry("inspect", scene)
         for line in ("skerry: set-up of 105,456 tetrahedra: adding the body", "s: measuring the meshes",
                      "s: choosing the step length", "s: timing the first steps"):
-            self.assertIn(line, said.stderr)
-        self.assertRegex(said.stdout,
+            self.assertIn(line, output.stderr)
+        self.assertRegex(output.stdout,
                          "removal of the worst 1 % of the tetrahedra was not tried: "
                          "their longest step is only 1[.0-9]* times")
         stats = self.folder / "stats.json"
-        said = self.skerry("run", scene, "--seconds", 1e-6, "--stats", stats)
-        self.assertIn("skerry: set-up of 105,456 tetrahedra: adding the body", said.stderr)
-        self.assertRegex(said.stdout,
+        output = self.skerry("run", scene, "--seconds", 1e-6, "--stats", stats)
+        self.assertIn("skerry: set-up of 105,456 tetrahedra: adding the body", output.stderr)
+        self.assertRegex(output.stdout,
                          "(?s)simulated in .*, after .* of loading and set-up.*\\n  set-up .* to read the scene")
         numbers = json.loads(stats.read_text())
         self.assertGreater(numbers["seconds_setup"], numbers["seconds_load"])
@@ -146,9 +148,9 @@ class ProgramInspectTest(ProgramCase):
         self.assertLess(max(abs(x) for x in worst["place"]), 0.5)
         self.assertAlmostEqual(worst["dt"], found["stable_dt"], delta=0.1 * found["stable_dt"])
         self.assertGreater(found["without"][-1]["stable_dt"], 1.5 * found["stable_dt"])
-        said = self.skerry("inspect", mesh).stdout
-        self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", said)
-        self.assertIn("without the worst", said)
+        output = self.skerry("inspect", mesh).stdout
+        self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", output)
+        self.assertIn("without the worst", output)
         scene = self.write("bad.json", {**SCENE, "probes": [], "bodies": [
             {"name": "bad", "mesh": {"file": "bad.msh", "scale": 0.2}, "material": "rubber", "position": [0, 0, 1]}]})
         of_body = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"][0]["step_bound"]
@@ -220,9 +222,9 @@ class ProgramInspectTest(ProgramCase):
 
     def test_a_repair_is_refused_before_any_work(self):
         mesh = self.bad_box("bad.msh")
-        self.assert_refused("inspect", mesh, "--repair", self.folder / "out.vtk", said=["out.vtk", ".msh"])
-        self.assert_refused("inspect", mesh, "--repair", mesh, said=["--overwrite"])
-        self.assert_refused("inspect", mesh, "--repair", mesh / "x.msh", said=["not a folder"])
+        self.assert_refused("inspect", mesh, "--repair", self.folder / "out.vtk", message=["out.vtk", ".msh"])
+        self.assert_refused("inspect", mesh, "--repair", mesh, message=["--overwrite"])
+        self.assert_refused("inspect", mesh, "--repair", mesh / "x.msh", message=["not a folder"])
         for arguments in (["--tolerance", 0.1], ["--repair", "x.msh", "--tolerance", -1], ["--overwrite"]):
             self.skerry("inspect", mesh, *arguments, code=2)
         # A copy of the program has no skerry-fill beside it.
@@ -256,9 +258,9 @@ class ProgramInspectTest(ProgramCase):
                 self.assertAlmostEqual(after["volume"], before["volume"], places=12)
             else:
                 self.assertGreater(found["edges_collapsed"], 0)
-        said = self.skerry("inspect", mesh, "--repair", mesh, "--overwrite").stdout
+        output = self.skerry("inspect", mesh, "--repair", mesh, "--overwrite").stdout
         for part in ("before", "after", "stable step", "worst altitude", "volume", "surface", "written"):
-            self.assertIn(part, said)
+            self.assertIn(part, output)
 
     def test_a_body_of_a_scene_is_repaired_for_its_material(self):
         self.need_fill()
@@ -288,7 +290,7 @@ class ProgramInspectTest(ProgramCase):
             self.assertEqual(again["tetrahedra"], found["before"]["tetrahedra"])
         self.assertIn("1 node split", self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0).stdout)
         two = self.bad_box("two.msh", flat=1, kept=[(1, 1, 1), (2, 2, 2)])
-        self.assert_refused("inspect", two, "--repair", self.folder / "none.msh", said=["2 parts", "save each part"])
+        self.assert_refused("inspect", two, "--repair", self.folder / "none.msh", message=["2 parts", "save each part"])
 
     def test_what_is_not_better_is_not_written(self):
         self.need_fill()

@@ -112,10 +112,10 @@ class ProgramRunTest(ProgramCase):
     def test_values_in_wrong_units_are_warnings_before_the_start(self):
         def warnings(*settings):
             done = self.skerry("run", self.scene, "--seconds", 1e-3, *(part for s in settings for part in ("--set", s)))
-            said = [line for line in done.stderr.splitlines() if line.startswith("skerry: WARNING: ")]
-            for line in said:
+            lines = [line for line in done.stderr.splitlines() if line.startswith("skerry: WARNING: ")]
+            for line in lines:
                 self.assertIn(line.removeprefix("skerry: "), re.sub(r"WARNING +", "WARNING: ", done.stdout))
-            return said
+            return lines
         self.assertEqual(warnings(), [])
         sag = warnings("materials.rubber.E=0.02")
         self.assertEqual(len(sag), 1)
@@ -326,25 +326,26 @@ class ProgramRunTest(ProgramCase):
             self.assertEqual((out / name).read_text(), "mine")
         kept = out / "drop_bodies_0003.vtu"
         kept.chmod(0o444)
-        self.assert_refused("run", self.scene, "--seconds", 0.01, "--out", out, said=["drop_bodies_0003", "protected"])
+        self.assert_refused("run", self.scene, "--seconds", 0.01, "--out", out,
+                            message=["drop_bodies_0003", "protected"])
         kept.chmod(0o644)
 
     def test_no_output_goes_among_the_frames_under_their_names(self):
         out = self.folder / "out"
         for name in ("drop.pvd", "drop_bodies_0000.vtu", "drop_colliders_0007.vtp"):
             self.assert_refused("run", self.scene, "--out", out, "--stats", out / name,
-                                said=["--stats", "--out also writes"])
+                                message=["--stats", "--out also writes"])
         self.skerry("run", self.scene, "--seconds", 0.02, "--out", out, "--quiet", "--stats", out / "drop_0000.json")
 
     def test_a_material_or_a_mesh_beyond_all_numbers_is_named(self):
         for change in ({"rho": 1e-300}, {"E": 1e308}):
             scene = {**SCENE, "materials": {"rubber": {**SCENE["materials"]["rubber"], **change}}}
-            self.assert_refused("run", self.write("wild.json", scene), said=["materials.rubber", "kg/m^3", "light"])
+            self.assert_refused("run", self.write("wild.json", scene), message=["materials.rubber", "kg/m^3", "light"])
         scene = json.loads(json.dumps(SCENE))
         scene["bodies"][0]["mesh"]["scale"] = 1e-30
         scene["probes"] = []
         self.assert_refused("run", self.write("dot.json", scene),
-                            said=["block", "mesh, material: found a mean edge length of"])
+                            message=["block", "mesh, material: found a mean edge length of"])
 
     def test_a_step_that_gets_shorter_is_not_called_longer(self):
         for scene in (self.scene, ROOT / "scenes/skittles.json"):
@@ -439,8 +440,8 @@ class SetTest(ProgramCase):
         self.assertAlmostEqual(json.loads(stats.read_text())["seconds_simulated"], 0.05)
         self.assertEqual(json.loads(stats.read_text())["stable_dt_body"], "brick")
         self.assert_refused("run", self.scene, "--set", "bodies[7].name=brick",
-                            said=["index 7 in a list of length ", "drop.json"])
-        self.assert_refused("run", self.scene, "--set", "settings.gravitee=1", said=["gravitee", "gravity"])
+                            message=["index 7 in a list of length ", "drop.json"])
+        self.assert_refused("run", self.scene, "--set", "settings.gravitee=1", message=["gravitee", "gravity"])
 
 
 if __name__ == "__main__":

@@ -18,9 +18,9 @@ class ProgramStartTest(ProgramCase):
                        {"name": "right", "position": [x, 0, 0], **ball}]})
 
     def test_bodies_that_coincide_are_refused_by_name_before_the_run(self):
-        self.assert_refused("run", self.overlapping(0), said=["overlapping.json", "'left' and 'right' coincide at"])
-        self.assert_refused("run", self.overlapping(0.02), said=["bodies 'left' and 'right' overlap by"])
-        self.assert_refused("run", self.overlapping(0.09), "--start-overlaps", "refuse", said=["overlap by"])
+        self.assert_refused("run", self.overlapping(0), message=["overlapping.json", "'left' and 'right' coincide at"])
+        self.assert_refused("run", self.overlapping(0.02), message=["bodies 'left' and 'right' overlap by"])
+        self.assert_refused("run", self.overlapping(0.09), "--start-overlaps", "refuse", message=["overlap by"])
         problems = json.loads(self.skerry("inspect", self.overlapping(0), "--json").stdout)["problems"]
         self.assertTrue(any("'left' and 'right' coincide" in problem for problem in problems), problems)
         self.assertTrue(any("a run refuses to start with these overlaps" in problem for problem in problems), problems)
@@ -77,11 +77,11 @@ class ProgramStartTest(ProgramCase):
         self.write("m.ele", "2 4 0\n1 1 2 3 4\n2 1 6 5 7\n")
         scene = self.write("joined.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
             {"name": "pair", "mesh": {"file": "m.ele"}, "material": "rubber"}]})
-        said = self.skerry("run", scene).stdout
-        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0, at which parts of", said)
-        self.assertRegex(said, "without a common edge in .*m.ele; contacts may fail")
-        said = self.skerry("inspect", scene).stdout
-        self.assertRegex(said, r'body "pair" \(mesh .*m.ele\): the boundary is not a closed manifold \(node 0, at')
+        output = self.skerry("run", scene).stdout
+        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0, at which parts of", output)
+        self.assertRegex(output, "without a common edge in .*m.ele; contacts may fail")
+        output = self.skerry("inspect", scene).stdout
+        self.assertRegex(output, r'body "pair" \(mesh .*m.ele\): the boundary is not a closed manifold \(node 0, at')
 
     def two_tetrahedra(self, name, second, apex=-1):
         """A scene with a mesh of two tetrahedra on a shared face; `second` lists the nodes of the second one."""
@@ -93,12 +93,12 @@ class ProgramStartTest(ProgramCase):
     def test_tetrahedra_listed_the_other_way_round_are_turned_and_counted(self):
         scene, stats = self.two_tetrahedra("mixed", "1 2 3 5"), self.folder / "stats.json"
         done = self.skerry("run", scene, "--stats", stats)
-        said = "mixed.ele: 1 of 2 tetrahedra list their nodes in the opposite order"
+        message = "mixed.ele: 1 of 2 tetrahedra list their nodes in the opposite order"
         self.assertIn("skerry: NOTE: ", done.stderr)
-        self.assertIn(said, done.stderr)
-        self.assertIn(said, json.loads(stats.read_text())["notes"][0])
-        self.assertIn(said, self.skerry("inspect", scene).stdout)
-        self.assertIn(said, self.skerry("inspect", self.folder / "mixed.ele").stdout)
+        self.assertIn(message, done.stderr)
+        self.assertIn(message, json.loads(stats.read_text())["notes"][0])
+        self.assertIn(message, self.skerry("inspect", scene).stdout)
+        self.assertIn(message, self.skerry("inspect", self.folder / "mixed.ele").stdout)
         self.assertEqual(self.skerry("run", scene, "--quiet").stderr, "")
         clean = self.skerry("run", self.two_tetrahedra("clean", "1 3 2 5"))
         self.assertNotIn("NOTE", clean.stderr)
@@ -117,7 +117,7 @@ class ProgramStartTest(ProgramCase):
         # The apex of the second tetrahedron lies on the wrong side: turned, it would lie in the first tetrahedron.
         scene = self.two_tetrahedra("tangled", "1 3 2 5", apex=0.5)
         self.assert_refused("run", scene,
-                            said=["tangled.json", "tangled.ele: tetrahedron 1", "inverted: 1, flat: 0 of 2"])
+                            message=["tangled.json", "tangled.ele: tetrahedron 1", "inverted: 1, flat: 0 of 2"])
         self.assertIn("1 inverted tetrahedra", self.skerry("inspect", self.folder / "tangled.ele").stdout)
 
     def test_a_stiff_explicit_body_is_named_with_its_remedy_before_a_long_run(self):
@@ -153,9 +153,9 @@ class ProgramStartTest(ProgramCase):
     def test_a_run_without_any_contact_says_so_with_the_shortest_distance(self):
         scene = {**SCENE, "settings": {"gravity": [0, 0, 0]}}
         scene["bodies"] = [{**SCENE["bodies"][0], "position": [0, 0, 0.6]}]
-        said = self.skerry("run", self.write("far.json", scene)).stdout
+        output = self.skerry("run", self.write("far.json", scene)).stdout
         self.assertIn('no contact in the whole run: the shortest distance at the end is 500 mm between body "block" '
-                      'and collider "floor"', said)
+                      'and collider "floor"', output)
         self.assertNotIn("no contact in the whole run", self.skerry("run", self.scene).stdout)
         del scene["colliders"]
         self.assertNotIn("no contact in the whole run", self.skerry("run", self.write("alone.json", scene)).stdout)
@@ -166,10 +166,10 @@ class ProgramStartTest(ProgramCase):
                             "material": "rubber"}],
                 "colliders": [{"name": "mill", "shape": {"plane": {}}, "position": [0, 0, -1],
                                "motion": {"velocity": [0, 0, -1], "angular_velocity": [0, 0, 1200]}}]}
-        said = "collider \"mill\" turns by 10 rad in a step"
-        self.assertIn(said, self.skerry("run", self.write("mill.json", mill)).stdout)
+        message = "collider \"mill\" turns by 10 rad in a step"
+        self.assertIn(message, self.skerry("run", self.write("mill.json", mill)).stdout)
         problems = json.loads(self.skerry("inspect", self.folder / "mill.json", "--json").stdout)["problems"]
-        self.assertTrue(any(said in problem for problem in problems), problems)
+        self.assertTrue(any(message in problem for problem in problems), problems)
         self.assertNotIn("WARNING", self.skerry("run", self.folder / "mill.json", "--step", 1e-4).stdout)
 
     def test_advice_names_an_option_that_there_is(self):

@@ -103,20 +103,20 @@ class ProgramTest(ProgramCase):
     def test_bad_scenes_are_refused_without_output(self):
         outputs = ["--stats", self.folder / "s.json", "--out", self.folder / "out", "--page", self.folder / "p.html"]
         bad = self.write("bad.json", {**SCENE, "secnods": 1})
-        self.assert_refused("run", bad, *outputs, said=["bad.json", "secnods", '"seconds"'])
-        self.assert_refused("run", self.write("syntax.json", '{"name": "x",\n}'), *outputs, said=["line 2, column"])
-        self.assert_refused("run", self.folder / "none.json", *outputs, said=["none.json", "no such file"])
-        self.assert_refused("inspect", bad, said=["secnods"])
+        self.assert_refused("run", bad, *outputs, message=["bad.json", "secnods", '"seconds"'])
+        self.assert_refused("run", self.write("syntax.json", '{"name": "x",\n}'), *outputs, message=["line 2, column"])
+        self.assert_refused("run", self.folder / "none.json", *outputs, message=["none.json", "no such file"])
+        self.assert_refused("inspect", bad, message=["secnods"])
 
     def test_output_that_cannot_be_written_is_refused_before_the_run(self):
         blocked = self.write("file", "") / "inside"
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
         for flag in ("--stats", "--out", "--page", "--film", "--gltf", "--trace", "--export-problems"):
-            self.assert_refused("run", endless, flag, blocked, said=["file", "not a folder"])
-        self.assert_refused("run", endless, "--stats", self.folder, said=["a folder"])
-        self.assert_refused("run", endless, "--film-color", "stress", said=["--film-color", "neither --film nor"])
+            self.assert_refused("run", endless, flag, blocked, message=["file", "not a folder"])
+        self.assert_refused("run", endless, "--stats", self.folder, message=["a folder"])
+        self.assert_refused("run", endless, "--film-color", "stress", message=["--film-color", "neither --film nor"])
         # One bad output among good ones: the good ones do not appear either.
-        self.assert_refused("run", endless, "--out", self.folder / "out", "--stats", blocked, said=["not a folder"])
+        self.assert_refused("run", endless, "--out", self.folder / "out", "--stats", blocked, message=["not a folder"])
 
     def test_only_files_are_replaced_and_links_stay(self):
         quick = self.write("quick.json", {**SCENE, "seconds": 0.01})
@@ -147,11 +147,11 @@ class ProgramTest(ProgramCase):
         protected = self.write("protected.json", "precious")
         protected.chmod(0o444)
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
-        self.assert_refused("run", endless, "--stats", protected, said=["protected.json", "a write-protected file"])
+        self.assert_refused("run", endless, "--stats", protected, message=["protected.json", "a write-protected file"])
         self.assertEqual(protected.read_text(), "precious")
         with socket.socket(socket.AF_UNIX) as made:
             made.bind(str(self.folder / "socket"))
-            self.assert_refused("run", endless, "--page", self.folder / "socket", said=["found a socket"])
+            self.assert_refused("run", endless, "--page", self.folder / "socket", message=["found a socket"])
         if pathlib.Path("/dev/full").exists():
             full = self.skerry("run", self.write("q.json", {**SCENE, "seconds": 0.01}), "--quiet", "--stats",
                                "/dev/full", code=3)
@@ -163,19 +163,19 @@ class ProgramTest(ProgramCase):
         before = endless.read_text()
         same = self.folder / "same"
         other = f"{self.folder}/./sub/../same"
-        self.assert_refused("run", endless, "--stats", same, "--trace", other, said=["--trace", "--stats"])
-        self.assert_refused("run", endless, "--page", endless, said=["--page", "the scene"])
+        self.assert_refused("run", endless, "--stats", same, "--trace", other, message=["--trace", "--stats"])
+        self.assert_refused("run", endless, "--page", endless, message=["--page", "the scene"])
         link = self.folder / "link.json"
         link.symlink_to(endless)
-        self.assert_refused("run", endless, "--stats", link, said=["--stats", "the scene"])
+        self.assert_refused("run", endless, "--stats", link, message=["--stats", "the scene"])
         self.assertEqual(endless.read_text(), before)
 
     def test_times_that_cannot_be_counted_are_refused_and_the_shortest_is_simulated(self):
         self.assert_refused("run", self.write("long.json", {**SCENE, "seconds": 1e300}),
-                            said=["long.json", "frames", "1e9"])
-        self.assert_refused("run", self.scene, "--frames-per-second", "1e300", said=["frames", "1e9"])
+                            message=["long.json", "frames", "1e9"])
+        self.assert_refused("run", self.scene, "--frames-per-second", "1e300", message=["frames", "1e9"])
         self.assert_refused("run", self.write("fine.json", {**SCENE, "probe_step": 1e-13}),
-                            said=["samples", "probe_step"])
+                            message=["samples", "probe_step"])
         for name, scene, flags in (("nano", SCENE, ["--seconds", "1e-11"]),
                                    ("coarse", {**SCENE, "seconds": 0.01, "frame_step": 1e300}, [])):
             stats = self.folder / f"{name}.stats"
@@ -195,16 +195,16 @@ class ProgramTest(ProgramCase):
             done = self.skerry(*arguments, code=2)
             self.assertNotEqual(done.stderr, "")
         self.assert_refused("view", self.scene, "--rate", "abc",
-                            said=["--rate: found abc, expected a number from 0 to 1000"])
+                            message=["--rate: found abc, expected a number from 0 to 1000"])
         self.assert_refused("view", self.scene, "--port", "65536",
-                            said=["--port: found 65536, expected a whole number from 0 to 65535"])
+                            message=["--port: found 65536, expected a whole number from 0 to 65535"])
         for command in ("run", "study"):
             self.assert_refused(command, self.scene, "--threads", "2000",
-                                said=["--threads: found 2000, expected a whole number from 0 to 1024"])
+                                message=["--threads: found 2000, expected a whole number from 0 to 1024"])
 
     def test_a_mesh_that_is_not_one_is_refused(self):
-        self.assert_refused("inspect", self.write("broken.msh", "nonsense"), said=["broken.msh"])
-        self.assert_refused("inspect", self.folder / "none.msh", said=["none.msh"])
+        self.assert_refused("inspect", self.write("broken.msh", "nonsense"), message=["broken.msh"])
+        self.assert_refused("inspect", self.folder / "none.msh", message=["none.msh"])
 
     def test_a_step_that_fails_ends_with_one_and_keeps_the_figures(self):
         fast = json.loads(json.dumps(SCENE))
@@ -233,7 +233,8 @@ class ProgramTest(ProgramCase):
         with view:
             port = re.search(r":(\d+)/", view.stdout.readline())[1]
             self.assert_refused("view", self.scene, "--no-open", "--port", port,
-                                said=[f"live view: port: found {port}, which cannot be opened", "expected a free port"])
+                                message=[f"live view: port: found {port}, which cannot be opened",
+                                         "expected a free port"])
             view.send_signal(signal.SIGINT)
             self.assertIn("drop: 0 s simulated", view.stdout.read())
         self.assertEqual(view.returncode, 0)
@@ -281,8 +282,8 @@ class ProgramTest(ProgramCase):
         self.assertEqual(self.skerry("schema").stdout, (ROOT / "docs/scene.schema.json").read_text())
 
     def test_solve_refuses_what_is_not_a_problem(self):
-        self.assert_refused("solve", self.write("not.hdf5", "text"), said=["not.hdf5"])
-        self.assert_refused("solve", self.folder / "none.hdf5", said=["none.hdf5"])
+        self.assert_refused("solve", self.write("not.hdf5", "text"), message=["not.hdf5"])
+        self.assert_refused("solve", self.folder / "none.hdf5", message=["none.hdf5"])
 
     def exported(self, folder, *flags):
         self.skerry("run", self.scene, "--quiet", "--export-problems", self.folder / folder, *flags)
@@ -291,7 +292,7 @@ class ProgramTest(ProgramCase):
     def test_reactions_do_not_take_the_place_of_their_problem(self):
         problem = self.folder / "problems" / self.exported("problems")[0]
         before = problem.read_bytes()
-        self.assert_refused("solve", problem, "--reactions", problem, said=["--reactions", "the problem"])
+        self.assert_refused("solve", problem, "--reactions", problem, message=["--reactions", "the problem"])
         self.assertEqual(problem.read_bytes(), before)
 
     def test_contact_problems_of_a_run_are_written_and_solved(self):
@@ -309,9 +310,9 @@ class ProgramTest(ProgramCase):
             self.assertLess(abs(found["energy_gap"]), 1e-9)
             for key in "condensed_freedoms largest_region unconverged error error_absolute error_over_q".split():
                 self.assertIn(key, found)
-        said = self.skerry("solve", self.folder / "problems" / names[-1]).stdout
+        output = self.skerry("solve", self.folder / "problems" / names[-1]).stdout
         for word in ("contacts", "error", "absolute", "|q|", "energy gap"):
-            self.assertIn(word, said)
+            self.assertIn(word, output)
 
     def test_which_problems_are_written_can_be_chosen(self):
         steps = self.exported("steps", "--export-every", 5)
@@ -324,8 +325,8 @@ class ProgramTest(ProgramCase):
             parts = [int(re.search(r"contacts(\d+)-region\d+", name).group(1)) for name in regions
                      if name.startswith(begin)]
             self.assertEqual(sum(parts), int(re.search(r"contacts(\d+)", step).group(1)))
-        said = self.skerry("run", self.scene, "--export-problems", self.folder / "again", "--export-every", 5).stdout
-        self.assertIn(f"{len(steps)} contact problems of {len(steps)} steps", said)
+        output = self.skerry("run", self.scene, "--export-problems", self.folder / "again", "--export-every", 5).stdout
+        self.assertIn(f"{len(steps)} contact problems of {len(steps)} steps", output)
         for name in steps:  # the same run gives the same bytes
             self.assertEqual((self.folder / "again" / name).read_bytes(), (self.folder / "steps" / name).read_bytes())
 

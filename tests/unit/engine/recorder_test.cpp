@@ -26,10 +26,10 @@ struct Swing {
         const auto rubber = world.add_material({.young_modulus = 1e5, .friction = 0.5});
         bar = world.add_body(mesh::box({0.2, 0.1, 0.1}, {4, 2, 2}), {.material = rubber, .position = {0, 0, 0.5}});
         ball = world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {1, 0, 0.1}});
-        std::vector<Index> left;
+        std::vector<Index> left_nodes;
         for (std::size_t n = 0; n < world.positions(bar).size(); ++n)
-            if (world.positions(bar)[n].x() < -0.09) left.push_back(static_cast<Index>(n));
-        hold = world.attach(bar, left);
+            if (world.positions(bar)[n].x() < -0.09) left_nodes.push_back(static_cast<Index>(n));
+        hold = world.attach(bar, left_nodes);
         floor = world.add_collider(Plane{});
     }
 

@@ -273,8 +273,8 @@ TEST_CASE("joints of a scene join its bodies by name", "[unit]") {
 
 TEST_CASE("joints of unknown objects, or invalid joints, are refused with their place in the file", "[unit]") {
     const TemporaryFolder folder;
-    const auto refused = [&](const std::string& keys, const std::string& what) {
-        CHECK_THROWS_WITH(load_scene(folder.write("joint.json", jointed_scene(keys))), Catch::Contains(what));
+    const auto refused = [&](const std::string& keys, const std::string& message) {
+        CHECK_THROWS_WITH(load_scene(folder.write("joint.json", jointed_scene(keys))), Catch::Contains(message));
     };
     refused(R"("kind": "ball", "first": "dor")", "joints[0].first: found \"dor\"");
     refused(R"("kind": "bal", "first": "door")", "joints[0].kind");

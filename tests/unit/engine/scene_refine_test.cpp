@@ -278,9 +278,9 @@ TEST_CASE("a scene file that is written with assignments runs as the scene does 
     const std::vector<std::string> assignments{"bodies[0].mesh.refine=1", "settings.step_size=1e-4", "seconds=0.5"};
     const std::filesystem::path copy = folder.path() / "results/best.json";
     write_scene(copy, scene, assignments);
-    const auto hash_after_steps = [](Scene of) {
-        for (int step = 0; step < 5; ++step) REQUIRE(of.world.advance(1e-4).ok());
-        return of.world.state_hash();
+    const auto hash_after_steps = [](Scene loaded) {
+        for (int step = 0; step < 5; ++step) REQUIRE(loaded.world.advance(1e-4).ok());
+        return loaded.world.state_hash();
     };
     const std::uint64_t hash = hash_after_steps(load_scene(copy));
     CHECK(hash == hash_after_steps(load_scene(scene, {.assignments = assignments})));

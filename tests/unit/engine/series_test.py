@@ -194,7 +194,7 @@ class SeriesTest(ProgramCase):
         series.write_text("time [s],other.kinetic [J]\n0,1\n")
         before = series.read_text()
         self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", series,
-                            said=["series.csv", "the column headings of the recorded probes"])
+                            message=["series.csv", "the column headings of the recorded probes"])
         self.assertEqual(series.read_text(), before)
 
     def test_a_resumed_run_keeps_an_existing_hdf5_file_and_begins_a_new_one_at_the_checkpoint(self):
@@ -203,7 +203,7 @@ class SeriesTest(ProgramCase):
         self.skerry("run", self.scene, "--seconds", 0.05, "--checkpoint", checkpoint, "--probes", series)
         before = series.read_bytes()
         self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", series,
-                            said=["series.h5", "an existing file", "a new file", ".csv"])
+                            message=["series.h5", "an existing file", "a new file", ".csv"])
         self.assertEqual(series.read_bytes(), before)
         for file in (later, rows):
             self.skerry("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", file)

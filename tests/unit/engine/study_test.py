@@ -54,25 +54,26 @@ class StudyTest(ProgramCase):
             while not (self.out / "run_scene.json").exists() and process.poll() is None:
                 time.sleep(0.01)
             process.send_signal(signal.SIGINT)
-            said, _ = process.communicate(timeout=60)
+            output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 128 + signal.SIGINT)
-        self.assertIn("Run the same command again", said)
+        self.assertIn("Run the same command again", output)
         names = {path.name for path in self.out.iterdir()}
         self.assertIn("run_scene.json", names)
         self.assertFalse([name for name in names if not name.endswith(".json") or name == "study.json"])
 
     def test_bad_input_is_refused_before_a_run(self):
-        self.assert_refused("study", self.scene, "--out", self.out, "--error", "much", said=["--error", "much", "1%"])
-        self.assert_refused("study", self.scene, "--out", self.out, "--probe", "blokc", said=['"blokc"', '"block"'])
+        self.assert_refused("study", self.scene, "--out", self.out, "--error", "much",
+                            message=["--error", "much", "1%"])
+        self.assert_refused("study", self.scene, "--out", self.out, "--probe", "blokc", message=['"blokc"', '"block"'])
         scene = self.write("study.json", SCENE)
-        self.assert_refused("study", scene, "--out", self.folder, said=["study.json", "SCENE"])
+        self.assert_refused("study", scene, "--out", self.folder, message=["study.json", "SCENE"])
 
     def test_files_that_the_scene_includes_are_no_outputs(self):
         self.out.mkdir()
         included = self.out / "cheapest.json"
         included.write_text(json.dumps(SCENE))
         scene = self.write("whole.json", {"include": ["results/cheapest.json"]})
-        self.assert_refused("study", scene, "--out", self.out, said=["cheapest.json", "a file of SCENE"])
+        self.assert_refused("study", scene, "--out", self.out, message=["cheapest.json", "a file of SCENE"])
         self.assertEqual(json.loads(included.read_text()), SCENE)
 
     def test_runs_of_another_scene_are_replaced_only_on_request(self):

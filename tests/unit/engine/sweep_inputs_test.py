@@ -98,33 +98,34 @@ class SweepInputsTest(ProgramCase):
         self.out = self.folder / "results"
 
     def test_bad_files_of_cases(self):
-        for name, content, said in FILES:
+        for name, content, message in FILES:
             with self.subTest(name):
                 cases = self.write("cases.json", content)
-                done = self.assert_refused("sweep", cases, "--out", self.out, said=said)
+                done = self.assert_refused("sweep", cases, "--out", self.out, message=message)
                 self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
 
     def test_files_that_are_none(self):
-        self.assert_refused("sweep", self.folder / "none.json", said=["none.json", "no such file", "cases in JSON"])
-        self.assert_refused("sweep", self.folder, said=["a folder", "cases in JSON"])
-        self.assert_refused("sweep", self.scene, "--out", self.out, said=["drop.json", "unknown key"])
-        self.assert_refused("sweep", said=["CASES"])
+        self.assert_refused("sweep", self.folder / "none.json", message=["none.json", "no such file", "cases in JSON"])
+        self.assert_refused("sweep", self.folder, message=["a folder", "cases in JSON"])
+        self.assert_refused("sweep", self.scene, "--out", self.out, message=["drop.json", "unknown key"])
+        self.assert_refused("sweep", message=["CASES"])
 
     def test_bad_places_for_results(self):
         cases = self.write("cases.json", {"scene": "drop.json", "list": [{}]})
-        self.assert_refused("sweep", cases, "--out", self.scene, said=["drop.json", "not a folder"])
+        self.assert_refused("sweep", cases, "--out", self.scene, message=["drop.json", "not a folder"])
         own = self.write("case_000000.json", {"scene": "drop.json", "list": [{}]})
-        self.assert_refused("sweep", own, "--out", self.folder, "--redo", said=["case_000000.json", "another folder"])
+        self.assert_refused("sweep", own, "--out", self.folder, "--redo",
+                            message=["case_000000.json", "another folder"])
         (self.out / "sweep.csv").mkdir(parents=True)
-        self.assert_refused("sweep", cases, "--out", self.out, said=["sweep.csv", "a folder", "the name of a file"])
+        self.assert_refused("sweep", cases, "--out", self.out, message=["sweep.csv", "a folder", "the name of a file"])
 
     def test_bad_processes(self):
         cases = self.write("cases.json", {"scene": "drop.json", "list": [{}]})
-        for options, environment, said in PROCESSES:
-            with self.subTest(said[0]):
+        for options, environment, message in PROCESSES:
+            with self.subTest(message[0]):
                 os.environ.update(environment)
                 try:
-                    self.assert_refused("sweep", cases, "--out", self.out, *options, said=said)
+                    self.assert_refused("sweep", cases, "--out", self.out, *options, message=message)
                 finally:
                     for key in environment:
                         del os.environ[key]

@@ -81,10 +81,10 @@ TEST_CASE("arrays may begin anywhere, and their jobs may start tasks", "[unit]")
 }
 
 TEST_CASE("shares cover every case exactly once", "[unit]") {
-    for (const int of : {1, 2, 3, 7, 64})
+    for (const int processes : {1, 2, 3, 7, 64})
         for (int index = 0; index < 50; ++index) {
             int owners = 0;
-            for (int rank = 0; rank < of; ++rank) owners += share({}, rank, of).has(index) ? 1 : 0;
+            for (int rank = 0; rank < processes; ++rank) owners += share({}, rank, processes).has(index) ? 1 : 0;
             CHECK(owners == 1);
         }
 }

@@ -108,7 +108,7 @@ class SweepTest(ProgramCase):
             self.assertTrue((self.folder / "out" / name / "sweep.csv").exists(), name)
         for name in ("../elsewhere", ".."):
             self.assert_refused("sweep", self.write("bad.json", {"name": name, **cases}),
-                                said=["bad.json", "name", name])
+                                message=["bad.json", "name", name])
 
     def test_what_is_done_is_not_done_again(self):
         self.sweep(self.cases, "--out", self.out)
@@ -130,7 +130,7 @@ class SweepTest(ProgramCase):
         self.sweep(self.cases, "--out", self.out)
         before = self.hashes()
         self.write("cases.json", {"scene": "drop.json", "grid": [{**MU, "values": [0.2, 0.5]}, HEIGHT]})
-        self.assert_refused("sweep", self.cases, "--out", self.out, said=[
+        self.assert_refused("sweep", self.cases, "--out", self.out, message=[
             str(self.out), "3 files", "not belong to these cases", "case_000000.json", '"mu":0.1', "--redo", "--out"])
         done = self.sweep(self.cases, "--out", self.out, "--redo")
         self.assertIn("3 cases are computed again", done.stderr)
@@ -140,11 +140,12 @@ class SweepTest(ProgramCase):
         self.scene.write_text(json.dumps(SCENE, indent=4))
         self.assertIn("0 of 6 cases to run", self.sweep(self.cases, "--out", self.out).stderr)
         self.scene.write_text(json.dumps({**SCENE, "seconds": 0.1}))
-        self.assert_refused("sweep", self.cases, "--out", self.out, said=["6 files", "an earlier version of the scene"])
+        self.assert_refused("sweep", self.cases, "--out", self.out,
+                            message=["6 files", "an earlier version of the scene"])
         self.scene.write_text(json.dumps(SCENE))
         (self.out / "case_000002.json").write_text('{"schema": "skerry.case/2", "case')
         self.assert_refused("sweep", self.cases, "--out", self.out,
-                            said=["case_000002.json", "not the result of a case"])
+                            message=["case_000002.json", "not the result of a case"])
         self.assertIn("1 of 6", self.sweep(self.cases, "--out", self.out, "--redo").stderr)
 
     def test_a_case_belongs_to_the_scenes_and_surfaces_that_its_scene_names(self):
@@ -159,7 +160,7 @@ class SweepTest(ProgramCase):
         self.sweep(self.cases, "--out", self.out)
         for name, content in (("part.json", {**SCENE, "probe_step": 0.01}), ("drawn.obj", box + "# changed\n")):
             self.write(name, content)
-            self.assert_refused("sweep", self.cases, "--out", self.out, said=["an earlier version of the scene"])
+            self.assert_refused("sweep", self.cases, "--out", self.out, message=["an earlier version of the scene"])
             self.assertIn("1 of 1 cases to run", self.sweep(self.cases, "--out", self.out, "--redo").stderr)
 
     def slow_cases(self):

@@ -186,14 +186,14 @@ TEST_CASE("a surface in other units, or far from its body, is reported", "[unit]
 TEST_CASE("a visual surface lives and moves with its body, and changes no step", "[unit][visual]") {
     World world{Settings{}}, plain{Settings{}};
     std::vector<BodyHandle> bodies;
-    for (World* of : {&plain, &world}) {
-        const auto material = of->add_material({});
-        bodies = {of->add_body(coarse_box(), {.material = material, .dynamics = BodyDynamics::explicit_elastic}),
-                  of->add_body(Sphere{0.5}, {.material = material, .position = {5, 0, 0}}),
-                  of->add_body(mesh::boundary(coarse_box()), {.material = material,
-                                                              .position = {0, 5, 0},
-                                                              .angular_velocity = {1, 2, 3},
-                                                              .dynamics = BodyDynamics::rigid})};
+    for (World* tested : {&plain, &world}) {
+        const auto material = tested->add_material({});
+        bodies = {tested->add_body(coarse_box(), {.material = material, .dynamics = BodyDynamics::explicit_elastic}),
+                  tested->add_body(Sphere{0.5}, {.material = material, .position = {5, 0, 0}}),
+                  tested->add_body(mesh::boundary(coarse_box()), {.material = material,
+                                                                  .position = {0, 5, 0},
+                                                                  .angular_velocity = {1, 2, 3},
+                                                                  .dynamics = BodyDynamics::rigid})};
     }
     VisualSurface ball = fine_ball();
     ball.materials = {{.name = "skin", .color = {1, 0.5, 0}, .opacity = 0.25, .texture = "skin.png"}, {.name = "b"}};
@@ -211,8 +211,8 @@ TEST_CASE("a visual surface lives and moves with its body, and changes no step",
     World loaded = World::from_bytes(world.to_bytes()), copy = world.clone();
     CHECK(loaded.state_hash() == world.state_hash());
     for (const BodyHandle body : bodies) {
-        for (World* of : {&loaded, &copy}) {
-            Visuals others(*of);
+        for (World* tested : {&loaded, &copy}) {
+            Visuals others(*tested);
             CHECK(*others.get(body) == *visuals.get(body));
             CHECK(others.positions(body) == visuals.positions(body));
         }

@@ -123,7 +123,7 @@ TEST_CASE("a saved world with any bytes in its header is refused, or is the same
     const int tries = draws(10000);
     for (int i = 0; i < tries; ++i) {
         Bytes changed = bytes;
-        for (std::uint64_t left = 1 + random.next() % 3; left > 0; --left) {
+        for (std::uint64_t remaining = 1 + random.next() % 3; remaining > 0; --remaining) {
             // half of the changes are digits, so that shapes and offsets stay readable
             const std::size_t at = random.next() % (sizeof length + length);
             const std::uint64_t digit = '0' + random.next() % 10;

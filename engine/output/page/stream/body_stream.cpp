@@ -82,13 +82,13 @@ void BodyStream::put_positions(const BodyFrame& body, std::string& out) {
     for (std::size_t vertex = 0; vertex < node_.size(); ++vertex)
         next_[vertex] = lattice_.code(body.position[static_cast<std::size_t>(node_[vertex])], now_[vertex]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::int64_t rest_prev = 0;
+        std::int64_t residual_prev = 0;
         for (std::size_t vertex = 0; vertex < node_.size(); ++vertex) {
             const std::int64_t last = now_[vertex][axis];
-            const std::int64_t way = frames_ > 1 ? last - before_[vertex][axis] : 0;
-            const std::int64_t rest = next_[vertex][axis] - last - way;
-            put_change(out, rest - rest_prev);
-            rest_prev = rest;
+            const std::int64_t last_change = frames_ > 1 ? last - before_[vertex][axis] : 0;
+            const std::int64_t residual = next_[vertex][axis] - last - last_change;
+            put_change(out, residual - residual_prev);
+            residual_prev = residual;
         }
     }
     before_.swap(now_);
@@ -106,17 +106,17 @@ void BodyStream::put_values(std::span<const std::vector<Real>> values, std::span
         const ValueScale& scale = scales[field];
         Values& last = values_[field];
         const bool follows = field == strain_field && stress_sum_prev > 0;
-        const Real share = follows ? static_cast<Real>(last.sum) / static_cast<Real>(stress_sum_prev) : 0;
+        const Real slope = follows ? static_cast<Real>(last.sum) / static_cast<Real>(stress_sum_prev) : 0;
         last.sum = 0;
-        int rest_prev = 0;
+        int residual_prev = 0;
         for (std::size_t vertex = 0; vertex < node_.size(); ++vertex) {
             const int code = scale.code(values[field][vertex]);
             const int change = code - shifted(last.code[vertex], last.exponent, scale.exponent());
             if (field == stress_field) stress_change[vertex] = change;
-            const int rest =
-                follows ? change - static_cast<int>(std::floor(stress_change[vertex] * share + 0.5)) : change;
-            put_change(out, rest - rest_prev);
-            rest_prev = rest;
+            const int residual =
+                follows ? change - static_cast<int>(std::floor(stress_change[vertex] * slope + 0.5)) : change;
+            put_change(out, residual - residual_prev);
+            residual_prev = residual;
             last.code[vertex] = code;
             last.sum += code;
         }

@@ -15,7 +15,7 @@ auto key_of(const ContactSides& sides, const std::array<Index, 4>& node) {
 
 /// Returns the lattice on which the point of a contact is encoded, and the lattice coordinates of a reference point:
 /// the first vertex of the body to which the lattice belongs, or the origin if the contact has no body.
-std::pair<Lattice, Code3> place_of(const ContactSides& sides, const std::vector<BodyStream>& bodies) {
+std::pair<Lattice, Code3> reference_of(const ContactSides& sides, const std::vector<BodyStream>& bodies) {
     const Index body = sides.first >= 0 ? sides.first : sides.second;
     if (body < 0) return {Lattice{}, Code3{}};
     const BodyStream& stream = bodies[static_cast<std::size_t>(body)];
@@ -28,8 +28,8 @@ void ContactStream::sort_rows() {
     order_prev_.resize(rows_prev_.size());
     std::iota(order_prev_.begin(), order_prev_.end(), 0);
     std::ranges::sort(order_prev_, [&](Index a, Index b) {
-        const Row &left = rows_prev_[static_cast<std::size_t>(a)], &right = rows_prev_[static_cast<std::size_t>(b)];
-        return std::tuple(key_of(left.sides, left.node), a) < std::tuple(key_of(right.sides, right.node), b);
+        const Row &row_a = rows_prev_[static_cast<std::size_t>(a)], &row_b = rows_prev_[static_cast<std::size_t>(b)];
+        return std::tuple(key_of(row_a.sides, row_a.node), a) < std::tuple(key_of(row_b.sides, row_b.node), b);
     });
 }
 
@@ -39,8 +39,8 @@ Index ContactStream::find(const ContactSides& sides, const std::array<Index, 4>&
         const Row& prev = rows_prev_[static_cast<std::size_t>(row)];
         return key_of(prev.sides, prev.node);
     };
-    const auto place = std::ranges::lower_bound(order_prev_, key, {}, key_at);
-    return place != order_prev_.end() && key_at(*place) == key ? *place : no_index;
+    const auto found_row = std::ranges::lower_bound(order_prev_, key, {}, key_at);
+    return found_row != order_prev_.end() && key_at(*found_row) == key ? *found_row : no_index;
 }
 
 void ContactStream::put_frame(const Frame& frame, std::span<const ContactSides> sides,
@@ -67,7 +67,7 @@ void ContactStream::put_frame(const Frame& frame, std::span<const ContactSides> 
     std::vector<std::array<std::int64_t, number_count>> changes(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Contact& contact = frame.contacts[i];
-        const auto [lattice, first_code] = place_of(sides[i], bodies);
+        const auto [lattice, first_code] = reference_of(sides[i], bodies);
         std::array<std::int64_t, number_count> base{first_code[0], first_code[1], first_code[2]};
         if (found[i] != no_index) {
             base = rows_prev_[static_cast<std::size_t>(found[i])].code;

@@ -38,13 +38,14 @@ void check_grid(const Place& place, const GridEntry& entry) {
 }
 
 void check_drawn(const Place& place, const DrawnEntry& entry) {
-    const std::string of = "the distribution " + in_quotes(name_of(entry.distribution));
+    const std::string distribution_text = "the distribution " + in_quotes(name_of(entry.distribution));
     const bool normal = entry.distribution == Distribution::normal;
-    const auto need = [&](const char* key, bool given, bool wanted) {
-        if (wanted && !given)
-            place.refuse("no key " + in_quotes(key), "the key " + in_quotes(key) + ", which " + of + " requires");
-        if (given && !wanted)
-            place.key(key).refuse("a key that is not used by " + of,
+    const auto need = [&](const char* key, bool is_given, bool is_needed) {
+        if (is_needed && !is_given)
+            place.refuse("no key " + in_quotes(key),
+                         "the key " + in_quotes(key) + ", which " + distribution_text + " requires");
+        if (is_given && !is_needed)
+            place.key(key).refuse("a key that is not used by " + distribution_text,
                                   normal ? "the keys \"mean\" and \"deviation\"" : "the keys \"from\" and \"to\"");
     };
     need("from", entry.from.has_value(), !normal);

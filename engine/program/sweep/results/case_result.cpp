@@ -63,8 +63,8 @@ CaseResult result_of(const RunResult& run, double seconds_cpu) {
         {"warnings", static_cast<double>(result.warnings.size())},
     };
     for (const ProbeRecord& probe : run.probes) {
-        const auto add = [&](const char* what, double value) {
-            result.figures.emplace_back(probe.name + "." + what, value);
+        const auto add = [&](const char* figure, double value) {
+            result.figures.emplace_back(probe.name + "." + figure, value);
         };
         add("slip_m", probe.slip_distance);
         add("max_slip_m_s", probe.max_slip);

@@ -9,14 +9,14 @@ Json rows_json(const SweepTable& table) {
     Json rows = Json::array();
     for (std::size_t i = 0; i < table.files.size(); ++i) {
         const CaseFile& file = table.files[i];
-        const bool whole = file.state == CaseFileState::whole;
+        const bool has_result = file.state == CaseFileState::whole;
         Json values = Json::object(), figures = Json::object();
         for (std::size_t p = 0; p < table.cases.parameters.size(); ++p)
             if (table.cases.values[i][p]) values[table.cases.parameters[p].name] = *table.cases.values[i][p];
         // Json writes a value that is not finite as null.
         for (const auto& [name, value] : file.result.figures) figures[name] = value;
         rows.push_back(object_of({{"case", i},
-                                  {"status", whole ? name_of(file.result.status) : "not run"},
+                                  {"status", has_result ? name_of(file.result.status) : "not run"},
                                   {"message", file.result.message},
                                   {"warnings", file.result.warnings},
                                   {"values", values},

@@ -29,13 +29,13 @@ double figure_of(const CaseResult& result, std::string_view name) {
 
 /// Returns the names of the numbers that the table on the terminal shows.
 std::vector<std::string> shown_figures(const SweepTable& table) {
-    std::vector<std::string> shown{"seconds_simulated", "steps",         "seconds_cpu",
+    std::vector<std::string> names{"seconds_simulated", "steps",         "seconds_cpu",
                                    "contacts_mean",     "penetration_m", "energy_error_share"};
     for (const std::string& name : figure_names(table))
         if (std::ranges::any_of(shown_of_probes, [&](const char* end) { return name.ends_with(end); }))
-            shown.push_back(name);
-    shown.emplace_back("warnings");
-    return shown;
+            names.push_back(name);
+    names.emplace_back("warnings");
+    return names;
 }
 
 std::string value_cell(const std::optional<Json>& value) {
@@ -47,10 +47,10 @@ std::string value_cell(const std::optional<Json>& value) {
 Cells case_cells(const SweepTable& table, int index, const std::vector<std::string>& shown) {
     const auto row = static_cast<std::size_t>(index);
     const CaseFile& file = table.files[row];
-    const bool whole = file.state == CaseFileState::whole;
+    const bool has_result = file.state == CaseFileState::whole;
     Cells cells{std::to_string(index)};
     for (const std::optional<Json>& value : table.cases.values[row]) cells.push_back(value_cell(value));
-    cells.emplace_back(whole ? name_of(file.result.status) : "not run");
+    cells.emplace_back(has_result ? name_of(file.result.status) : "not run");
     for (const std::string& name : shown) cells.push_back(number_cell(figure_of(file.result, name)));
     return cells;
 }
@@ -72,20 +72,21 @@ std::string aligned(const std::vector<Cells>& lines) {
 
 std::string messages_text(const SweepTable& table) {
     std::string text;
-    int told = 0, left = 0;
+    int listed = 0, omitted = 0;
     for (const CaseFile& file : table.files) {
         const CaseResult& result = file.result;
         if (file.state != CaseFileState::whole || (result.message.empty() && result.warnings.empty())) continue;
-        if (told++ >= most_messages) {
-            ++left;
+        if (listed++ >= most_messages) {
+            ++omitted;
             continue;
         }
-        const std::string of = "case " + std::to_string(result.index) + " ";
-        if (!result.message.empty()) text += of + std::string(name_of(result.status)) + ": " + result.message + "\n";
-        for (const std::string& warning : result.warnings) text += of + "WARNING: " + warning + "\n";
+        const std::string case_name = "case " + std::to_string(result.index) + " ";
+        if (!result.message.empty())
+            text += case_name + std::string(name_of(result.status)) + ": " + result.message + "\n";
+        for (const std::string& warning : result.warnings) text += case_name + "WARNING: " + warning + "\n";
     }
-    if (left > 0)
-        text += "... " + std::to_string(left) + " more cases have messages or warnings; sweep.csv lists them all\n";
+    if (omitted > 0)
+        text += "... " + std::to_string(omitted) + " more cases have messages or warnings; sweep.csv lists them all\n";
     return text;
 }
 
@@ -102,8 +103,8 @@ std::string totals_text(const SweepTable& table) {
         cpu += figure_of(file.result, "seconds_cpu");
     }
     std::string text = std::to_string(table.cases.count()) + " cases: " + std::to_string(counts[0]) + " ok";
-    const auto add = [&text](int count, const char* what) {
-        if (count > 0) text += ", " + std::to_string(count) + " " + what;
+    const auto add = [&text](int count, const char* description) {
+        if (count > 0) text += ", " + std::to_string(count) + " " + description;
     };
     add(counts[1], "failed");
     add(counts[2], "refused");
@@ -116,16 +117,16 @@ std::string totals_text(const SweepTable& table) {
 /// parameters then had no effect. Otherwise returns an empty text.
 std::string sameness_text(const SweepTable& table) {
     std::string hash;
-    int same = 0;
+    int simulated = 0;
     for (const CaseFile& file : table.files) {
         if (file.state != CaseFileState::whole || file.result.state_hash.empty()) continue;
         if (!hash.empty() && file.result.state_hash != hash) return {};
         hash = file.result.state_hash;
-        ++same;
+        ++simulated;
     }
-    return same > 1 ? "All " + std::to_string(same) +
-                          " cases that ran ended in the same state: the parameters had no effect\n"
-                    : "";
+    return simulated > 1 ? "All " + std::to_string(simulated) +
+                               " cases that ran ended in the same state: the parameters had no effect\n"
+                         : "";
 }
 
 std::string joined(const std::vector<std::string>& sentences) {

@@ -47,10 +47,10 @@ void sort_self_crossings(WorldState& world) {
     });
 }
 
-/// Collective: all ranks must call it. Returns the message of rank 0. `mine`: message of this rank, used only on rank
-/// 0.
-RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
-    return std::move(ranks.gather_everywhere(mine).front());
+/// Collective: all ranks must call it. Returns the message of rank 0. `own_message`: message of this rank, used only on
+/// rank 0.
+RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> own_message) {
+    return std::move(ranks.gather_everywhere(own_message).front());
 }
 
 /// Number of messages in which a rank sends its bodies to another rank. With several messages, only a part of the
@@ -64,7 +64,7 @@ RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> ma
     const WholeWorld& whole = world.ranks.whole;
     std::vector<std::uint8_t> sent;
     for (std::size_t b = 0; b < marked.size(); ++b)
-        sent.push_back(marked[b] != 0 && whole.unit[world.ranks.place[b]] % batches == batch);
+        sent.push_back(marked[b] != 0 && whole.unit[world.ranks.world_row[b]] % batches == batch);
     BodyRows rows = rows_of_bodies(
         world, sent, [&](std::uint64_t pair) { return batch == 0 && whole.pair_owner(pair, whole.owner) == pairs_of; });
     if (with_records) copy_records(world.model, sent, rows);
@@ -76,17 +76,17 @@ void for_each_fact(WholeWorld& whole, std::vector<BodyExtent>& extents, Model& m
     visit(whole.owner);
     visit(whole.slot);
     visit(whole.unit);
-    visit(whole.place_of_slot);
+    visit(whole.world_row_of_slot);
     visit(extents);
     visit(model.forced);
     visit(model.disabled_pairs.key);
 }
 
-void join_ranks(RankState& mine, Ranks& ranks, const RankSettings& settings, std::uint64_t step) {
-    mine.ranks = &ranks;
-    mine.rank = ranks.rank();
-    mine.whole.settings = settings;
-    mine.whole.searched_step = step;
+void join_ranks(RankState& rank_state, Ranks& ranks, const RankSettings& settings, std::uint64_t step) {
+    rank_state.ranks = &ranks;
+    rank_state.rank = ranks.rank();
+    rank_state.whole.settings = settings;
+    rank_state.whole.searched_step = step;
 }
 
 /// Completes all pending changes of a world, as before a step, and chooses the owners of its bodies.
@@ -98,16 +98,16 @@ std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSetti
     Model& model = state.model;
     note_changed_seams(model);
     settle_clusters(model, state.scratch.stiffness_sum);
-    RankState& mine = state.ranks;
-    mine.whole = whole_world_of(model);
-    join_ranks(mine, ranks, settings, state.record.counters.steps);
-    mine.place.resize(model.bodies.slot.size());
-    std::iota(mine.place.begin(), mine.place.end(), Index{0});
+    RankState& rank_state = state.ranks;
+    rank_state.whole = whole_world_of(model);
+    join_ranks(rank_state, ranks, settings, state.record.counters.steps);
+    rank_state.world_row.resize(model.bodies.slot.size());
+    std::iota(rank_state.world_row.begin(), rank_state.world_row.end(), Index{0});
     std::vector<std::uint8_t> moves;
     for (const BodyKind kind : model.bodies.kind) moves.push_back(kind == BodyKind::deformable);
     std::vector<BodyExtent> extents = extents_of(state, moves);
-    mine.whole.owner = choose_owners(mine.whole, extents, settings, ranks.size());
-    mine.whole.holders = find_holders(mine.whole, mine.whole.owner, extents, ranks.size());
+    rank_state.whole.owner = choose_owners(rank_state.whole, extents, settings, ranks.size());
+    rank_state.whole.holders = find_holders(rank_state.whole, rank_state.whole.owner, extents, ranks.size());
     return extents;
 }
 
@@ -116,11 +116,11 @@ std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     World world = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(world);
     const WholeWorld& whole = state.ranks.whole;
-    copy.ranks.place = state.ranks.place;
-    copy.ranks.whole.joining_place = whole.joining_place;
+    copy.ranks.world_row = state.ranks.world_row;
+    copy.ranks.whole.joining_world_row = whole.joining_world_row;
     copy.ranks.whole.records.resize(whole.size());
     std::vector<std::uint8_t> kept;
-    for (const Index place : copy.ranks.place) kept.push_back(whole.owner[place] == WholeWorld::everywhere);
+    for (const Index world_row : copy.ranks.world_row) kept.push_back(whole.owner[world_row] == WholeWorld::everywhere);
     replace_rows(copy, kept, {}, [](std::uint64_t) { return false; });
     copy.ranks = {};
     copy.model.disabled_pairs.key.clear();  // their keys name bodies that are absent here
@@ -142,7 +142,7 @@ std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSetting
     WholeWorld& whole = state.ranks.whole;
     put_value(std::string(), facts);
     for_each_fact(whole, extents, state.model, [&](const auto& fact) { put_value(fact, facts); });
-    for (const std::vector<Index>& places : whole.joining_place) put_value(places, facts);
+    for (const std::vector<Index>& rows_of_slots : whole.joining_world_row) put_value(rows_of_slots, facts);
     state.model.for_each_joining([&](const char*, auto&, const auto& map) {
         put_value(map.names.size(), facts);
         for (const auto& [handle, name] : map.names) {
@@ -196,47 +196,49 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     std::vector<BodyExtent> extents;
     for_each_fact(whole, extents, state.model, [&](auto& fact) { take_value(reader, fact); });
     state.model.for_each_joining(
-        [&](const char*, auto&, auto&) { take_value(reader, whole.joining_place.emplace_back()); });
-    take_value(reader, whole.joining_place.emplace_back());  // last list: attachments
+        [&](const char*, auto&, auto&) { take_value(reader, whole.joining_world_row.emplace_back()); });
+    take_value(reader, whole.joining_world_row.emplace_back());  // last list: attachments
     state.model.for_each_joining([&](const char*, auto&, auto& map) {
         for (auto count = reader.take<std::size_t>(); count > 0; --count) {
             const auto slot = reader.take<std::uint32_t>();
             take_value(reader, map.names[map.handle_of_slot(slot)]);
         }
     });
-    for (std::size_t place = 0; place < whole.size(); ++place) {
+    for (std::size_t world_row = 0; world_row < whole.size(); ++world_row) {
         std::string name;
         take_value(reader, name);
         whole.records.push_back(record_of_name(std::move(name)));
-        if (whole.owner[place] == WholeWorld::everywhere) state.ranks.place.push_back(static_cast<Index>(place));
+        if (whole.owner[world_row] == WholeWorld::everywhere)
+            state.ranks.world_row.push_back(static_cast<Index>(world_row));
     }
     join_ranks(state.ranks, ranks, settings, state.record.counters.steps);
     whole.holders = find_holders(whole, whole.owner, extents, ranks.size());
-    const std::vector<std::uint8_t> all(state.ranks.place.size(), 1);
+    const std::vector<std::uint8_t> all(state.ranks.world_row.size(), 1);
     replace_rows(state, all, rows, [](std::uint64_t) { return true; });
     return extents;
 }
 
 /// Returns the complete world on rank 0. `state`: the part of this rank.
 std::optional<World> gather_parts(WorldState& state) {
-    const RankState& mine = state.ranks;
+    const RankState& rank_state = state.ranks;
     std::vector<std::uint8_t> sent;
-    for (const Index place : mine.place) sent.push_back(mine.whole.owner[place] == mine.rank);
+    for (const Index world_row : rank_state.world_row)
+        sent.push_back(rank_state.whole.owner[world_row] == rank_state.rank);
     std::vector<BodyRows> added;
     for (Index batch = 0; batch < batches; ++batch) {
-        const std::vector<RankMessage> bodies =
-            mine.ranks->gather(mine.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, mine.rank, false));
+        const std::vector<RankMessage> bodies = rank_state.ranks->gather(
+            rank_state.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, rank_state.rank, false));
         for (std::size_t rank = 1; rank < bodies.size(); ++rank) added.push_back(rows_of_message(bodies[rank]));
     }
-    if (mine.rank != 0) return std::nullopt;
+    if (rank_state.rank != 0) return std::nullopt;
     World whole = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(whole);
-    copy.ranks.place = mine.place;
-    copy.ranks.whole = mine.whole;
+    copy.ranks.world_row = rank_state.world_row;
+    copy.ranks.whole = rank_state.whole;
     std::vector<std::uint8_t> kept;
-    for (const Index place : mine.place) {
-        const std::int32_t owner = mine.whole.owner[place];
-        kept.push_back(owner == mine.rank || owner == WholeWorld::everywhere);
+    for (const Index world_row : rank_state.world_row) {
+        const std::int32_t owner = rank_state.whole.owner[world_row];
+        kept.push_back(owner == rank_state.rank || owner == WholeWorld::everywhere);
     }
     replace_rows(copy, kept, added, [](std::uint64_t) { return true; });
     sort_self_crossings(copy);

@@ -57,7 +57,7 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     const Real margin = margin_of(world, body, speed);
     const Vec3 more = Vec3::Constant(margin + bodies.contact_distance[body] + bodies.round_radius[body]);
     const auto elements = static_cast<Real>(bodies.blocks[body].size() * Index{element_lanes});
-    return {.place = world.ranks.place[body],
+    return {.world_row = world.ranks.world_row[body],
             .cost = body_cost + elements + static_cast<Real>(bodies.implicit[body].size()) + contact_cost * contacts,
             .margin = margin,
             .box = {box.lower - more, box.upper + more},
@@ -104,17 +104,17 @@ RankSearch search_ranks(WorldState& world) {
     const std::vector<BodyExtent> extents = extents_of(world, owned_bodies(world));
     std::vector<FetchedUnit> requests;
     for (const BodyRequest& request : ranks.requests)
-        requests.push_back({ranks.whole.unit[request.place], request.rank, searches_of_requests});
+        requests.push_back({ranks.whole.unit[request.world_row], request.rank, searches_of_requests});
     keep_longest(requests);
-    RankMessage mine;
+    RankMessage own_message;
     const SearchHeader header{extents.size(), requests.size(), ranks.stale.size(),
                               world.cache.crossings.row.empty() ? 0u : 1u};
-    put_rows(std::span<const SearchHeader>(&header, 1), mine);
-    put_rows(std::span<const BodyExtent>(extents), mine);
-    put_rows(std::span<const FetchedUnit>(requests), mine);
-    put_rows(std::span<const Index>(ranks.stale), mine);
+    put_rows(std::span<const SearchHeader>(&header, 1), own_message);
+    put_rows(std::span<const BodyExtent>(extents), own_message);
+    put_rows(std::span<const FetchedUnit>(requests), own_message);
+    put_rows(std::span<const Index>(ranks.stale), own_message);
     RankSearch all;
-    for (const RankMessage& message : ranks.ranks->gather_everywhere(mine)) {
+    for (const RankMessage& message : ranks.ranks->gather_everywhere(own_message)) {
         MailReader reader(message);
         const auto of_rank = reader.take<SearchHeader>();
         const auto append = [&](auto& to, std::uint64_t count) {
@@ -126,7 +126,7 @@ RankSearch search_ranks(WorldState& world) {
         append(all.stale, of_rank.stale);
         all.keeps_owners |= of_rank.keeps_owners != 0;
     }
-    std::ranges::sort(all.extents, {}, &BodyExtent::place);
+    std::ranges::sort(all.extents, {}, &BodyExtent::world_row);
     ranks.requests.clear();
     ranks.stale.clear();
     return all;
@@ -145,14 +145,14 @@ class HolderChange {
 public:
     HolderChange(WholeWorld& whole, const RankSearch& found, Column<std::int32_t> owner, int rank_count)
         : before_(whole), owner_(std::move(owner)), stale_(whole.size(), 0) {
-        for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
+        for (const Index world_row : found.stale) stale_[static_cast<std::size_t>(whole.unit[world_row])] = 1;
         note_requests(whole, found.requests);
         holders_ = find_holders(whole, owner_, found.extents, rank_count);
         for (const BodyExtent& body : found.extents) {
-            const Index unit = whole.unit[body.place];
+            const Index unit = whole.unit[body.world_row];
             auto fetched = std::ranges::lower_bound(whole.fetched, unit, {}, &FetchedUnit::unit);
             for (; fetched != whole.fetched.end() && fetched->unit == unit; ++fetched)
-                insert(fetched->rank, holders_at(body.place));
+                insert(fetched->rank, holders_at(body.world_row));
         }
         keep_ghosts(found.extents, rank_count);
     }
@@ -161,20 +161,20 @@ public:
     const Column<std::int32_t>& owner() const { return owner_; }
     const std::vector<std::vector<int>>& holders() const { return holders_; }
     /// True if the rank that owned a body before the change sends the rows of the body to `rank`.
-    bool is_sent(Index place, int rank) const {
-        const auto p = static_cast<std::size_t>(place);
-        if (!contains(holders_[p], rank) || rank == before_.owner[place]) return false;
-        return !contains(before_.holders[p], rank) || rank == owner_[place] ||
-               stale_[static_cast<std::size_t>(before_.unit[place])] != 0;
+    bool is_sent(Index world_row, int rank) const {
+        const auto p = static_cast<std::size_t>(world_row);
+        if (!contains(holders_[p], rank) || rank == before_.owner[world_row]) return false;
+        return !contains(before_.holders[p], rank) || rank == owner_[world_row] ||
+               stale_[static_cast<std::size_t>(before_.unit[world_row])] != 0;
     }
     /// True if a rank keeps the rows of a body that it held before.
-    bool is_kept(Index place, int rank) const {
-        return before_.owner[place] == WholeWorld::everywhere ||
-               (contains(holders_[static_cast<std::size_t>(place)], rank) && !is_sent(place, rank));
+    bool is_kept(Index world_row, int rank) const {
+        return before_.owner[world_row] == WholeWorld::everywhere ||
+               (contains(holders_[static_cast<std::size_t>(world_row)], rank) && !is_sent(world_row, rank));
     }
 
 private:
-    std::vector<int>& holders_at(Index place) { return holders_[static_cast<std::size_t>(place)]; }
+    std::vector<int>& holders_at(Index world_row) { return holders_[static_cast<std::size_t>(world_row)]; }
 
     static void note_requests(WholeWorld& whole, const std::vector<FetchedUnit>& requests) {
         for (FetchedUnit& fetched : whole.fetched) --fetched.searches;
@@ -189,11 +189,11 @@ private:
         if (owners_change()) return;
         std::vector<std::uint8_t> receives(static_cast<std::size_t>(rank_count), 0);
         for (const BodyExtent& body : extents)
-            for (const int rank : holders_at(body.place))
-                if (is_sent(body.place, rank)) receives[static_cast<std::size_t>(rank)] = 1;
+            for (const int rank : holders_at(body.world_row))
+                if (is_sent(body.world_row, rank)) receives[static_cast<std::size_t>(rank)] = 1;
         for (const BodyExtent& body : extents)
-            for (const int rank : before_.holders[static_cast<std::size_t>(body.place)])
-                if (!receives[static_cast<std::size_t>(rank)]) insert(rank, holders_at(body.place));
+            for (const int rank : before_.holders[static_cast<std::size_t>(body.world_row)])
+                if (!receives[static_cast<std::size_t>(rank)]) insert(rank, holders_at(body.world_row));
     }
 
     const WholeWorld& before_;
@@ -212,9 +212,9 @@ std::vector<int> partners_of(const HolderChange& change, const WholeWorld& whole
         return partners;
     }
     for (const BodyExtent& body : extents)
-        for (const int rank : change.holders()[static_cast<std::size_t>(body.place)]) {
-            if (!change.is_sent(body.place, rank)) continue;
-            const int sender = whole.owner[body.place];
+        for (const int rank : change.holders()[static_cast<std::size_t>(body.world_row)]) {
+            if (!change.is_sent(body.world_row, rank)) continue;
+            const int sender = whole.owner[body.world_row];
             if (sender == ranks.rank()) insert(rank, partners);
             if (rank == ranks.rank()) insert(sender, partners);
         }
@@ -229,8 +229,8 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     std::vector<RankMessage> out, in(partners.size());
     for (const int partner : partners) {
         std::vector<std::uint8_t> sent;
-        for (std::size_t b = 0; b < ranks.place.size(); ++b)
-            sent.push_back(whole.owner[ranks.place[b]] == rank && change.is_sent(ranks.place[b], partner));
+        for (std::size_t b = 0; b < ranks.world_row.size(); ++b)
+            sent.push_back(whole.owner[ranks.world_row[b]] == rank && change.is_sent(ranks.world_row[b], partner));
         BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
             return whole.pair_owner(pair, whole.owner) == rank && whole.pair_owner(pair, change.owner()) == partner;
         });
@@ -240,14 +240,14 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     if (!partners.empty()) ranks.ranks->exchange(partners, out, in);
     std::vector<std::uint8_t> kept;
     bool all_kept = true;
-    for (const Index place : ranks.place) {
-        kept.push_back(change.is_kept(place, rank));
+    for (const Index world_row : ranks.world_row) {
+        kept.push_back(change.is_kept(world_row, rank));
         all_kept &= kept.back() != 0;
     }
     std::vector<BodyRows> added;
     for (const RankMessage& message : in) added.push_back(rows_of_message(message));
     const bool changes = !all_kept || change.owners_change() ||
-                         std::ranges::any_of(added, [](const BodyRows& rows) { return !rows.place.empty(); });
+                         std::ranges::any_of(added, [](const BodyRows& rows) { return !rows.world_row.empty(); });
     whole.holders = change.holders();
     whole.owner = change.owner();
     if (changes)
@@ -275,16 +275,16 @@ struct GhostMotion {
 /// follows from the speed at the start of the step, and the path at the greatest speed in this attempt, after forces
 /// and contacts. Also requests a rank search if the last one was steps_between_searches steps ago.
 void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
-                  const RunCounters& run, const std::uint64_t& searched_step, RankFindings& mine) {
+                  const RunCounters& run, const std::uint64_t& searched_step, RankFindings& own_findings) {
     const std::span<const Real> reach = search.memory.body_reach;
     for (std::size_t b = 0; b < bodies.margin.size(); ++b) {
         const Real speed = bodies.max_speed[b];
         tried_speed[b] = speed;
         // If the speed is not finite, the step is refused, and no margin would be wide enough.
         const Real motion = std::isfinite(speed) ? std::max(reach[b], speed * h) : reach[b];
-        mine.ghosts_expired |= !(bodies.moved[b] + motion < bodies.margin[b]);
+        own_findings.ghosts_expired |= !(bodies.moved[b] + motion < bodies.margin[b]);
     }
-    mine.ghosts_expired |= run.steps >= searched_step + steps_between_searches;
+    own_findings.ghosts_expired |= run.steps >= searched_step + steps_between_searches;
 }
 
 /// Adds the greatest possible path of each body in a committed step of length `h` [s] to `moved`.
@@ -310,22 +310,22 @@ void note_holders(RankState& ranks, std::span<const BodyExtent> extents) {
     ranks.owner.clear();
     ranks.peers.clear();
     ranks.holders.clear();
-    ranks.margin.assign(ranks.place.size(), infinity);
-    ranks.moved.assign(ranks.place.size(), 0);
-    ranks.tried_speed.assign(ranks.place.size(), 0);
-    for (std::size_t b = 0; b < ranks.place.size(); ++b) {
-        const Index place = ranks.place[b];
-        const std::int32_t owner = whole.owner[place];
+    ranks.margin.assign(ranks.world_row.size(), infinity);
+    ranks.moved.assign(ranks.world_row.size(), 0);
+    ranks.tried_speed.assign(ranks.world_row.size(), 0);
+    for (std::size_t b = 0; b < ranks.world_row.size(); ++b) {
+        const Index world_row = ranks.world_row[b];
+        const std::int32_t owner = whole.owner[world_row];
         ranks.owner.push_back(owner == WholeWorld::everywhere ? ranks.rank : owner);
-        for (const int rank : whole.holders[static_cast<std::size_t>(place)])
+        for (const int rank : whole.holders[static_cast<std::size_t>(world_row)])
             if (rank != ranks.rank) insert(rank, ranks.peers);
         if (owner != ranks.rank) continue;
-        const auto body = std::ranges::lower_bound(extents, place, {}, &BodyExtent::place);
+        const auto body = std::ranges::lower_bound(extents, world_row, {}, &BodyExtent::world_row);
         ranks.margin[b] = body->margin;
     }
-    for (const Index place : ranks.place) {
+    for (const Index world_row : ranks.world_row) {
         std::vector<int>& holders = ranks.holders.emplace_back();
-        for (const int rank : whole.holders[static_cast<std::size_t>(place)])
+        for (const int rank : whole.holders[static_cast<std::size_t>(world_row)])
             if (rank != ranks.rank)
                 holders.push_back(static_cast<int>(std::ranges::lower_bound(ranks.peers, rank) - ranks.peers.begin()));
     }
@@ -335,7 +335,7 @@ void list_ghost_watch(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     g.stage("ranks/watch_ghosts", watch_ghosts, read(w.cache.search), inputs<GhostMotion>(w.ranks, w.model.bodies),
             write(w.ranks.tried_speed), value(w.scratch.parameters.h), read(w.record.counters),
-            read(w.ranks.whole.searched_step), make(w.ranks.mine));
+            read(w.ranks.whole.searched_step), make(w.ranks.own_findings));
 }
 
 void list_ghost_paths(WorldState& w, TaskGraph& g) {

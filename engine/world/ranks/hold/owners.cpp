@@ -50,7 +50,7 @@ std::vector<UnitExtent> extents_of_units(const WholeWorld& whole, std::span<cons
     std::vector<Index> row(whole.size(), no_index);
     std::vector<UnitExtent> units;
     for (const BodyExtent& body : extents) {
-        const auto unit = static_cast<std::size_t>(whole.unit[body.place]);
+        const auto unit = static_cast<std::size_t>(whole.unit[body.world_row]);
         if (row[unit] == no_index) {
             row[unit] = static_cast<Index>(units.size());
             units.push_back({.unit = static_cast<Index>(unit)});
@@ -92,15 +92,15 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
     for (const UnitExtent& unit : units) total += unit.cost;
     std::vector<std::int32_t> owner_of_unit(whole.size(), 0);
     SplitMix random{settings.seed};
-    Real before = 0;
+    Real cost_before = 0;
     std::int32_t turn = 0;
     for (const UnitExtent& unit : units) {
         std::int32_t& owner = owner_of_unit[static_cast<std::size_t>(unit.unit)];
         switch (settings.map) {
             case OwnerMap::curve:
-                owner =
-                    std::min(static_cast<std::int32_t>((before + unit.cost / 2) / total * rank_count), rank_count - 1);
-                before += unit.cost;
+                owner = std::min(static_cast<std::int32_t>((cost_before + unit.cost / 2) / total * rank_count),
+                                 rank_count - 1);
+                cost_before += unit.cost;
                 break;
             case OwnerMap::round_robin:
                 owner = turn++ % rank_count;
@@ -111,54 +111,55 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
         }
     }
     Column<std::int32_t> owners = whole.owner;
-    for (std::size_t place = 0; place < owners.size(); ++place)
-        if (owners[place] != WholeWorld::everywhere)
-            owners[place] = owner_of_unit[static_cast<std::size_t>(whole.unit[place])];
+    for (std::size_t world_row = 0; world_row < owners.size(); ++world_row)
+        if (owners[world_row] != WholeWorld::everywhere)
+            owners[world_row] = owner_of_unit[static_cast<std::size_t>(whole.unit[world_row])];
     return owners;
 }
 
 Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> extents, int rank_count) {
     std::vector<Real> cost(static_cast<std::size_t>(rank_count), 0);
     for (const BodyExtent& body : extents)
-        cost[static_cast<std::size_t>(owner[static_cast<std::size_t>(body.place)])] += body.cost;
+        cost[static_cast<std::size_t>(owner[static_cast<std::size_t>(body.world_row)])] += body.cost;
     const Real total = std::accumulate(cost.begin(), cost.end(), Real(0));
     return total > 0 ? std::ranges::max(cost) * rank_count / total : 1;
 }
 
 std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
                                            std::span<const BodyExtent> extents, int rank_count) {
-    const auto owner_of = [&](Index place) { return owner[static_cast<std::size_t>(place)]; };
-    std::vector<std::vector<int>> of_unit(whole.size());
-    const auto hold = [&](Index place, Index other) {
-        of_unit[static_cast<std::size_t>(whole.unit[place])].push_back(owner_of(other));
+    const auto owner_of = [&](Index world_row) { return owner[static_cast<std::size_t>(world_row)]; };
+    std::vector<std::vector<int>> holders_of_unit(whole.size());
+    const auto hold = [&](Index world_row, Index other) {
+        holders_of_unit[static_cast<std::size_t>(whole.unit[world_row])].push_back(owner_of(other));
     };
     Column<Aabb> boxes;
     Column<Index> rows;
     for (const BodyExtent& body : extents) {
         rows.push_back(static_cast<Index>(boxes.size()));
         boxes.push_back(body.box);
-        hold(body.place, body.place);
+        hold(body.world_row, body.world_row);
         if (!body.on_all) continue;
-        std::vector<int>& ranks = of_unit[static_cast<std::size_t>(whole.unit[body.place])];
+        std::vector<int>& ranks = holders_of_unit[static_cast<std::size_t>(whole.unit[body.world_row])];
         for (int rank = 0; rank < rank_count; ++rank) ranks.push_back(rank);
     }
     BoxGrid grid;
     grid.build(boxes, rows);
     for (const Index row : rows)
         grid.for_each_near(row, [&](Index other) {
-            const Index a = extents[static_cast<std::size_t>(row)].place,
-                        b = extents[static_cast<std::size_t>(other)].place;
+            const Index a = extents[static_cast<std::size_t>(row)].world_row,
+                        b = extents[static_cast<std::size_t>(other)].world_row;
             if (owner_of(a) == owner_of(b) || distance_squared(boxes[row], boxes[other]) > 0) return;
             hold(a, b);
             hold(b, a);
         });
-    for (std::vector<int>& ranks : of_unit) {
+    for (std::vector<int>& ranks : holders_of_unit) {
         std::ranges::sort(ranks);
         ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
     }
     std::vector<std::vector<int>> holders(whole.size());
     for (const BodyExtent& body : extents)
-        holders[static_cast<std::size_t>(body.place)] = of_unit[static_cast<std::size_t>(whole.unit[body.place])];
+        holders[static_cast<std::size_t>(body.world_row)] =
+            holders_of_unit[static_cast<std::size_t>(whole.unit[body.world_row])];
     return holders;
 }
 

@@ -12,7 +12,7 @@ namespace skerry {
 
 /// Properties of a body that decide which ranks own and hold the body. Ranks send these properties to each other.
 struct BodyExtent {
-    Index place;
+    Index world_row;
     Real cost;    // time per step, in units of the time for an explicit element
     Real margin;  // distance by which the body may move inside the box [m]
     Aabb box;     // [m]

@@ -53,10 +53,10 @@ WholeWorld whole_world_of(Model& model) {
         if (!moves) own[b] = no_slot;  // a kinematic body has no handle slot of its own, but that of its collider
         whole.owner.push_back(moves ? 0 : WholeWorld::everywhere);
     }
-    whole.place_of_slot = rows_by_slot(own);
+    whole.world_row_of_slot = rows_by_slot(own);
     model.for_each_joining(
-        [&](const char*, auto& table, auto&) { whole.joining_place.push_back(rows_by_slot(table.slot)); });
-    whole.joining_place.push_back(rows_by_slot(model.attachments.slot));
+        [&](const char*, auto& table, auto&) { whole.joining_world_row.push_back(rows_by_slot(table.slot)); });
+    whole.joining_world_row.push_back(rows_by_slot(model.attachments.slot));
     return whole;
 }
 

@@ -19,7 +19,7 @@ struct FetchedUnit {
     int searches;  // number of rank searches after which the rank no longer needs the unit
 };
 
-/// The *place* of a body is its row in the undivided world. Bodies of a rank are in the order of their places.
+/// The *world row* of a body is its row in the undivided world. Bodies of a rank are in the order of these rows.
 struct WholeWorld {
     // value of `owner` for a kinematic body, which every rank computes itself
     static constexpr std::int32_t everywhere = -1;
@@ -32,10 +32,10 @@ struct WholeWorld {
     Column<Index> unit;
     // records of bodies that this rank does not hold: complete on rank 0, only names on all other ranks
     std::vector<BodyRecord> records;
-    std::vector<Index> place_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
+    std::vector<Index> world_row_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
     // For each row that connects bodies: its row in the undivided world. There is one list for each table, in the order
     // of Model::for_each_joining, and a last one for attachments. Each list is indexed by handle slot.
-    std::vector<std::vector<Index>> joining_place;
+    std::vector<std::vector<Index>> joining_world_row;
     // For each row of the undivided world: ranks that hold the body, ascending.
     std::vector<std::vector<int>> holders;
     std::vector<FetchedUnit> fetched;
@@ -43,15 +43,17 @@ struct WholeWorld {
     RankSettings settings;
 
     std::size_t size() const { return owner.size(); }
-    Index place(std::uint32_t slot_of_body) const { return place_of_slot[slot_of_body]; }
+    Index row_of_slot(std::uint32_t slot_of_body) const { return world_row_of_slot[slot_of_body]; }
     /// The rank that searches the pair with this key (ContactKey::pair), and stores its contacts. `owners`: by row of
     /// the undivided world.
     std::int32_t pair_owner(std::uint64_t key, std::span<const std::int32_t> owners) const {
         const PairSlots pair = slots_of_pair(key);
         const bool of_first = pair.is_collider || !PairOwners::belongs_to_second(pair.first, pair.second);
-        return owners[static_cast<std::size_t>(place(of_first ? pair.first : pair.second))];
+        return owners[static_cast<std::size_t>(row_of_slot(of_first ? pair.first : pair.second))];
     }
-    BodyHandle handle(const Model& model, Index place) const { return model.body_map.handle_of_slot(slot[place]); }
+    BodyHandle handle(const Model& model, Index world_row) const {
+        return model.body_map.handle_of_slot(slot[world_row]);
+    }
 };
 
 /// Facts about a world that is not yet divided. All bodies belong to rank 0.

@@ -243,7 +243,7 @@ private:
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
             if (regions_.unit[b] == static_cast<Index>(b) && is_solved_here(static_cast<Index>(b)))
                 for (const int p : bodies_.holders_of(static_cast<Index>(b)))
-                    mail.put(static_cast<std::size_t>(p), bodies_.place[b]);
+                    mail.put(static_cast<std::size_t>(p), bodies_.world_row[b]);
         for (std::size_t p = 0; p < peers; ++p) mail.put(p, no_index);
         for_each_result_of_units([&](Index unit) { return is_solved_here(unit); },
                                  [&](Index unit, const auto& number) {
@@ -259,7 +259,7 @@ private:
             const Index body = bodies_.body_of(rows_.stencil[row].node[0]);
             const std::span<const int> holders = bodies_.holders_of(body);
             if (holders.empty()) continue;
-            const MailedHold hold{bodies_.place[static_cast<std::size_t>(body)],
+            const MailedHold hold{bodies_.world_row[static_cast<std::size_t>(body)],
                                   holds_.number(body, holds_.entry[row - first]), out_.impulse[row]};
             for (const int p : holders) regions_.mail.put(static_cast<std::size_t>(p), hold);
         }
@@ -270,7 +270,7 @@ private:
         const std::span<const Vec3> deforming =
             rows_of(std::span<const Vec3>(out_.deforming_impulse), rows_.body_implicit[static_cast<std::size_t>(body)]);
         const auto is_zero = [](const Vec3& impulse) { return impulse == Vec3::Zero(); };
-        regions_.mail.put(peer, MailedBody{bodies_.place[static_cast<std::size_t>(body)],
+        regions_.mail.put(peer, MailedBody{bodies_.world_row[static_cast<std::size_t>(body)],
                                            static_cast<Index>(deforming.size()) -
                                                static_cast<Index>(std::ranges::count_if(deforming, is_zero)),
                                            out_.contact_impulse[frame], out_.contact_moment[frame],
@@ -298,8 +298,8 @@ private:
             receive_body(mail, reader);
         for (MailedHold mail = reader.take<MailedHold>(); mail.body != no_index; mail = reader.take<MailedHold>())
             holds_.impulse[holds_.row(bodies_.row_of(mail.body), mail.entry)] += mail.impulse;
-        for (Index place = reader.take<Index>(); place != no_index; place = reader.take<Index>())
-            regions_.unit_from[bodies_.row_of(place)] = static_cast<int>(peer);
+        for (Index world_row = reader.take<Index>(); world_row != no_index; world_row = reader.take<Index>())
+            regions_.unit_from[bodies_.row_of(world_row)] = static_cast<int>(peer);
         for_each_result_of_units([&](Index unit) { return regions_.unit_from[unit] == static_cast<int>(peer); },
                                  [&]<class Number>(Index, Number& number) { number = reader.take<Number>(); });
         SKERRY_CHECK(reader.at_end());

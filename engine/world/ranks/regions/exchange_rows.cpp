@@ -55,7 +55,7 @@ private:
         if (body == no_index || bodies_.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic) return true;
         if (peer >= 0 && bodies_.is_held_by(peer, body)) return true;
         const int to = peer >= 0 ? bodies_.peers[static_cast<std::size_t>(peer)] : -2 - peer;
-        requests_.push_back({to, bodies_.place[static_cast<std::size_t>(body)]});
+        requests_.push_back({to, bodies_.world_row[static_cast<std::size_t>(body)]});
         return false;
     }
 
@@ -72,7 +72,7 @@ private:
         for (std::size_t p = 0; p < bodies_.peers.size(); ++p) regions_.mail.put(p, regions_.unit_count[p]);
         for_each_own_unit([&](Index body, int peer) {
             if (regions_.elsewhere[body])
-                regions_.mail.put(static_cast<std::size_t>(peer), bodies_.place[static_cast<std::size_t>(body)]);
+                regions_.mail.put(static_cast<std::size_t>(peer), bodies_.world_row[static_cast<std::size_t>(body)]);
         });
     }
 
@@ -105,8 +105,8 @@ private:
         return any;
     }
 
-    Index place_of(Index body) const {
-        return body == no_index ? no_index : bodies_.place[static_cast<std::size_t>(body)];
+    Index world_row_of(Index body) const {
+        return body == no_index ? no_index : bodies_.world_row[static_cast<std::size_t>(body)];
     }
 
     MailedContact mailed(std::size_t c) const {
@@ -121,8 +121,8 @@ private:
                             .static_friction = contacts_.static_friction[c],
                             .dynamic_friction = contacts_.dynamic_friction[c],
                             .restitution = contacts_.restitution[c],
-                            .first_body = place_of(contacts_.first_body[c]),
-                            .second_body = place_of(contacts_.second_body[c]),
+                            .first_body = world_row_of(contacts_.first_body[c]),
+                            .second_body = world_row_of(contacts_.second_body[c]),
                             .collider = contacts_.collider[c]},
                            contacts_.friction_axis[c],
                            contacts_.impulse[c]};
@@ -199,7 +199,7 @@ private:
 };
 
 void remove_repeated(Column<BodyRequest>& requests) {
-    const auto name = [](const BodyRequest& request) { return std::pair(request.rank, request.place); };
+    const auto name = [](const BodyRequest& request) { return std::pair(request.rank, request.world_row); };
     std::ranges::sort(requests, {}, name);
     const auto is_same = [&](const BodyRequest& a, const BodyRequest& b) { return name(a) == name(b); };
     const BodyRequest* const end = std::unique(requests.begin(), requests.end(), is_same);
@@ -208,14 +208,14 @@ void remove_repeated(Column<BodyRequest>& requests) {
 
 void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const JoinedBodies& joined,
                    const LabelRounds& rounds, ContactTable& contacts, RankRegions& regions,
-                   Column<BodyRequest>& requests, RankFindings& mine, RankChannel& channel) {
+                   Column<BodyRequest>& requests, RankFindings& own_findings, RankChannel& channel) {
     requests.clear();
     find_units(joined, bodies.size(), regions);
-    mine.label_rounds = label_regions(bodies, nodes, contacts.stencil, rounds.count, regions, channel);
-    mine.labels_open = mine.label_rounds > rounds.count;
+    own_findings.label_rounds = label_regions(bodies, nodes, contacts.stencil, rounds.count, regions, channel);
+    own_findings.labels_open = own_findings.label_rounds > rounds.count;
     RowExchange(bodies, contacts, regions, requests).run(channel);
     remove_repeated(requests);
-    mine.bodies_missing = !requests.empty();
+    own_findings.bodies_missing = !requests.empty();
 }
 
 /// Puts the contacts that this rank has found back into the contact table. exchange_results has received the impulses
@@ -239,7 +239,7 @@ void list_row_exchange(WorldState& w, TaskGraph& g) {
     const Model& m = w.model;
     g.stage("ranks/exchange_rows", exchange_rows, inputs<SharedBodies>(w.ranks, m.bodies, m.nodes),
             inputs<RegionGroups>(m), inputs<JoinedBodies>(m), value(w.ranks.label_rounds), make(w.scratch.contacts),
-            make(w.scratch.rank_regions), make(w.ranks.requests), make(w.ranks.mine), make(w.ranks.channel));
+            make(w.scratch.rank_regions), make(w.ranks.requests), make(w.ranks.own_findings), make(w.ranks.channel));
 }
 
 void list_rows_taken_back(WorldState& w, TaskGraph& g) {

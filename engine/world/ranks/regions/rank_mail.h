@@ -67,8 +67,8 @@ private:
 
 /// Collective. Calls visit(row) for the rows of all ranks, in the order of the ranks.
 template <class T>
-void for_each_gathered(Ranks& ranks, std::span<const T> mine, auto&& visit) {
-    for (const RankMessage& message : ranks.gather_everywhere(std::as_bytes(mine)))
+void for_each_gathered(Ranks& ranks, std::span<const T> own_rows, auto&& visit) {
+    for (const RankMessage& message : ranks.gather_everywhere(std::as_bytes(own_rows)))
         MailReader(message).take_all<T>(visit);
 }
 

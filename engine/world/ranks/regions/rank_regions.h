@@ -42,7 +42,7 @@ struct MailedContact {
 
 /// The bodies of a rank and the other ranks that hold them.
 struct SharedBodies {
-    std::span<const Index> place;                  // by body: its row in the undivided world
+    std::span<const Index> world_row;              // by body: its row in the undivided world
     std::span<const std::int32_t> owner;           // RankState
     const std::vector<std::vector<int>>& holders;  // RankState
     const std::vector<int>& peers;                 // RankState
@@ -54,7 +54,7 @@ struct SharedBodies {
     static SharedBodies bind(const Binder& binder, const RankState& ranks, const BodyTable& body,
                              const NodeTable& node);
 
-    std::size_t size() const { return place.size(); }
+    std::size_t size() const { return world_row.size(); }
     Index body_of(Index node) const { return node_body[static_cast<std::size_t>(node)]; }
     /// Indices in `peers` of the other ranks that hold a body.
     std::span<const int> holders_of(Index body) const { return holders[static_cast<std::size_t>(body)]; }
@@ -63,11 +63,11 @@ struct SharedBodies {
     int peer_of(int rank) const;
     NodeName name(Index node) const {
         const auto body = static_cast<std::size_t>(body_of(node));
-        return {place[body], node - nodes[body].begin};
+        return {world_row[body], node - nodes[body].begin};
     }
-    /// Row of BodyTable of the body with the row `of_place` in the undivided world; no_index if this rank does not hold
-    /// it.
-    Index row_of(Index of_place) const { return row_of_place(place, of_place); }
+    /// Row of BodyTable of the body with the row `row_in_world` in the undivided world; no_index if this rank does not
+    /// hold it.
+    Index row_of(Index row_in_world) const { return local_row(world_row, row_in_world); }
     /// Row of NodeTable; no_index if this rank does not hold the body.
     Index node_of(const NodeName& name) const {
         const Index body = row_of(name.body);

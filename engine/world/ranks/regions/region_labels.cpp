@@ -6,7 +6,7 @@ namespace skerry {
 
 SharedBodies SharedBodies::bind(const Binder& binder, const RankState& ranks, const BodyTable& body,
                                 const NodeTable& node) {
-    return {.place = binder.read(ranks.place),
+    return {.world_row = binder.read(ranks.world_row),
             .owner = binder.read(ranks.owner),
             .holders = binder.value(ranks.holders),
             .peers = binder.value(ranks.peers),

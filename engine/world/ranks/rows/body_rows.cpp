@@ -18,16 +18,16 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
     BodyRows rows;
     Model& model = world.model;
     std::array<RowSource, 1> source{{{.model = &model,
-                                      .place = world.ranks.place,
+                                      .world_row = world.ranks.world_row,
                                       .marked = marked,
                                       .watched = model.watch.body,
                                       .kept = model.watch.kept,
                                       .evaluation = model.watch.evaluation,
                                       .gives_common = false}}};
-    rows.place = compose_rows(source, world.ranks.whole, rows.model);
+    rows.world_row = compose_rows(source, world.ranks.whole, rows.model);
     rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.evaluation});
     const Column<Real>& valid_until = world.cache.search.body_valid_until;
-    for (std::size_t b = 0; b < world.ranks.place.size(); ++b)
+    for (std::size_t b = 0; b < world.ranks.world_row.size(); ++b)
         if (marked[b] != 0)
             rows.valid_until.push_back(b < valid_until.size() ? valid_until[b] : SearchState::forgotten);
     copy_contacts(world, wants_pair, rows);
@@ -84,14 +84,14 @@ void move_tables(Model& from, Model& to) {
 /// Finds bodies whose old rows are replaced by added rows, and maps their old rows to the new ones. Data that refer to
 /// these bodies then remain valid. Returns marks of these bodies, by new row.
 std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> rows_before,
-                                         std::span<const Index> place_before, const Model& now,
-                                         std::span<const Index> place_now, RowMoves& moves) {
+                                         std::span<const Index> world_row_before, const Model& now,
+                                         std::span<const Index> world_row_now, RowMoves& moves) {
     constexpr auto range_of = OfBodyTables<Range>::members();
     constexpr auto index_of = OfBodyTables<Index>::members();
-    std::vector<std::uint8_t> exchanged(place_now.size(), 0);
-    for (std::size_t b = 0; b < place_before.size(); ++b) {
+    std::vector<std::uint8_t> exchanged(world_row_now.size(), 0);
+    for (std::size_t b = 0; b < world_row_before.size(); ++b) {
         if (moves.body_now[b] != no_index) continue;
-        moves.body_now[b] = row_of_place(place_now, place_before[b]);
+        moves.body_now[b] = local_row(world_row_now, world_row_before[b]);
         if (moves.body_now[b] == no_index) continue;
         const auto row = static_cast<std::size_t>(moves.body_now[b]);
         exchanged[row] = 1;
@@ -122,8 +122,8 @@ void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const s
 /// Adapts all data that refer to rows of bodies, and computes all derived data again. `before`: the old tables.
 class RowsReplaced {
 public:
-    RowsReplaced(WorldState& world, Model& before, std::span<const Index> place_before, const RowMoves& moves)
-        : world_(world), model_(world.model), before_(before), place_before_(place_before), moves_(moves) {}
+    RowsReplaced(WorldState& world, Model& before, std::span<const Index> world_row_before, const RowMoves& moves)
+        : world_(world), model_(world.model), before_(before), world_row_before_(world_row_before), moves_(moves) {}
 
     void handles_and_links() const {
         Column<std::uint32_t> slots = model_.bodies.slot;
@@ -142,16 +142,19 @@ public:
 
     void records(std::span<BodyRows> added) const {
         std::vector<BodyRecord>& store = world_.ranks.whole.records;
-        const auto record = [&](Index place) -> BodyRecord& { return store[static_cast<std::size_t>(place)]; };
-        for (std::size_t b = 0; b < place_before_.size(); ++b)
-            record(place_before_[b]) = std::move(model_.body_records[b]);
+        const auto record = [&](Index world_row) -> BodyRecord& { return store[static_cast<std::size_t>(world_row)]; };
+        for (std::size_t b = 0; b < world_row_before_.size(); ++b)
+            record(world_row_before_[b]) = std::move(model_.body_records[b]);
         for (BodyRows& rows : added)
-            for (std::size_t b = 0; b < rows.records.size(); ++b) record(rows.place[b]) = std::move(rows.records[b]);
+            for (std::size_t b = 0; b < rows.records.size(); ++b)
+                record(rows.world_row[b]) = std::move(rows.records[b]);
         model_.body_records.clear();
-        for (const Index place : world_.ranks.place) model_.body_records.push_back(std::move(record(place)));
+        for (const Index world_row : world_.ranks.world_row)
+            model_.body_records.push_back(std::move(record(world_row)));
         if (world_.ranks.rank == 0) return;
-        for (const Index place : place_before_)
-            if (world_.ranks.row_of(place) == no_index) record(place) = record_of_name(std::move(record(place).name));
+        for (const Index world_row : world_row_before_)
+            if (world_.ranks.row_of(world_row) == no_index)
+                record(world_row) = record_of_name(std::move(record(world_row).name));
     }
 
     void derived_columns() const {
@@ -211,7 +214,7 @@ private:
     WorldState& world_;
     Model& model_;
     Model& before_;
-    std::span<const Index> place_before_;
+    std::span<const Index> world_row_before_;
     const RowMoves& moves_;
 };
 
@@ -223,9 +226,9 @@ void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
     for (const std::uint64_t key : keys) {
         if (std::ranges::find(known, key) != known.end()) continue;
         known.push_back(key);
-        const auto place = std::lower_bound(disabled.begin(), disabled.end(), key);
-        if (place != disabled.end() && *place == key)
-            disabled.erase(static_cast<std::size_t>(place - disabled.begin()), 1);
+        const auto found = std::lower_bound(disabled.begin(), disabled.end(), key);
+        if (found != disabled.end() && *found == key)
+            disabled.erase(static_cast<std::size_t>(found - disabled.begin()), 1);
     }
 }
 
@@ -254,13 +257,13 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                   const WantsPair& keeps_pair) {
     Model& model = world.model;
     RankState& ranks = world.ranks;
-    // Copies of data that are needed below: compose_rows frees all tables of bodies except BodyTable, and ranks.place
-    // is overwritten.
-    const Column<Index> place_before = ranks.place, body_of_node = model.nodes.body;
+    // Copies of data that are needed below: compose_rows frees all tables of bodies except BodyTable, and
+    // ranks.world_row is overwritten.
+    const Column<Index> world_row_before = ranks.world_row, body_of_node = model.nodes.body;
     std::vector<OfBodyTables<Range>> rows_before;
-    for (std::size_t b = 0; b < place_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));
+    for (std::size_t b = 0; b < world_row_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));
     std::vector<RowSource> sources{{.model = &model,
-                                    .place = place_before,
+                                    .world_row = world_row_before,
                                     .marked = kept,
                                     .watched = model.watch.body,
                                     .kept = model.watch.kept,
@@ -269,7 +272,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                                     .is_used_up = true}};
     for (BodyRows& rows : added)
         sources.push_back({.model = &rows.model,
-                           .place = rows.place,
+                           .world_row = rows.world_row,
                            .marked = {},
                            .watched = rows.watch[0].body,
                            .kept = rows.watch[0].kept,
@@ -277,9 +280,10 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                            .gives_common = false,
                            .is_used_up = true});
     Model fresh;
-    ranks.place = compose_rows(sources, ranks.whole, fresh);
+    ranks.world_row = compose_rows(sources, ranks.whole, fresh);
     RowMoves& moves = sources[0].moves;
-    const std::vector<std::uint8_t> exchanged = find_exchanged(rows_before, place_before, fresh, ranks.place, moves);
+    const std::vector<std::uint8_t> exchanged =
+        find_exchanged(rows_before, world_row_before, fresh, ranks.world_row, moves);
     moves.collider_now.resize(model.colliders.slot.size());
     std::iota(moves.collider_now.begin(), moves.collider_now.end(), Index{0});
     keep_contacts(moves, body_of_node, keeps_pair, world);
@@ -287,7 +291,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     Model before;
     move_tables(model, before);
     move_tables(fresh, model);
-    const RowsReplaced replaced(world, before, place_before, moves);
+    const RowsReplaced replaced(world, before, world_row_before, moves);
     replaced.handles_and_links();
     replaced.records(added);
     replaced.derived_columns();
@@ -319,10 +323,9 @@ void for_each_column(BodyRows& rows, auto&& visit) {
     for (const AnyColumn& column :
          {AnyColumn(clusters.nodes.offset), AnyColumn(clusters.nodes.item), AnyColumn(clusters.body),
           AnyColumn(clusters.first_entry), AnyColumn(clusters.inverse), AnyColumn(clusters.cluster_of),
-          AnyColumn(clusters.index_in_cluster), AnyColumn(rows.model.watch.position),
-          AnyColumn(rows.model.watch.stiffness_sum), AnyColumn(rows.model.watch.step), AnyColumn(rows.place),
-          AnyColumn(rows.watch), AnyColumn(rows.valid_until), AnyColumn(rows.self_crossings),
-          AnyColumn(rows.enabled_pairs)})
+          AnyColumn(clusters.index_in_cluster), AnyColumn(rows.model.watch.position), AnyColumn(rows.model.watch.stiffness_sum),
+          AnyColumn(rows.model.watch.step), AnyColumn(rows.world_row), AnyColumn(rows.watch),
+          AnyColumn(rows.valid_until), AnyColumn(rows.self_crossings), AnyColumn(rows.enabled_pairs)})
         visit(column);
     visit_all(rows.warm_start);
     visit_all(rows.resting);

@@ -29,7 +29,7 @@ struct FoundSelfCrossing {
 /// any other body. Handles, colliders and materials are not included, because every rank has them.
 struct BodyRows {
     Model model;                  // only these rows, node clusters and the columns of StepWatch
-    Column<Index> place;          // by row of BodyTable: row in the undivided world
+    Column<Index> world_row;      // by row of BodyTable: row in the undivided world
     Column<WatchProgress> watch;  // a single row, stored as a column because message_of() sends only columns
     Column<Real> valid_until;     // SearchState::body_valid_until
     WarmStartTable warm_start;

@@ -61,8 +61,8 @@ void free_column(std::size_t number, auto& table) {
 void free_column(std::size_t table, std::size_t number, Model& model) {
     SurfaceTables& surface = model.surface;
     const auto free_in = [&](auto&... tables) {
-        std::size_t place = 0;
-        ((place++ == table ? free_column(number, tables) : void()), ...);
+        std::size_t index = 0;
+        ((index++ == table ? free_column(number, tables) : void()), ...);
     };
     ColumnTable vertex_triangle{surface.vertex_triangle};
     free_in(model.bodies, model.nodes, model.node_blocks, model.elements, model.element_nodes, surface.edges,
@@ -89,21 +89,21 @@ public:
         append_watch();
         append_attachments();
         append_joining_rows();
-        return std::move(place_);
+        return std::move(world_row_);
     }
 
 private:
     void pick_bodies() {
         for (std::size_t s = 0; s < sources_.size(); ++s) {
-            RowSource& from = sources_[s];
-            from.moves.body_now.assign(from.place.size(), no_index);
-            from.moves.down.resize(from.place.size());
-            for (std::size_t b = 0; b < from.place.size(); ++b)
-                if (from.gives(b)) picks_.push_back({from.place[b], s, b});
+            RowSource& row_source = sources_[s];
+            row_source.moves.body_now.assign(row_source.world_row.size(), no_index);
+            row_source.moves.down.resize(row_source.world_row.size());
+            for (std::size_t b = 0; b < row_source.world_row.size(); ++b)
+                if (row_source.gives(b)) picks_.push_back({row_source.world_row[b], s, b});
         }
         std::ranges::sort(picks_, {}, &Pick::order);
         for (std::size_t row = 0; row < picks_.size(); ++row) {
-            place_.push_back(picks_[row].order);
+            world_row_.push_back(picks_[row].order);
             sources_[picks_[row].source].moves.body_now[picks_[row].row] = static_cast<Index>(row);
         }
     }
@@ -220,7 +220,7 @@ private:
             const AttachmentTable& table = sources_[s].model->attachments;
             for (std::size_t a = 0; a < table.slot.size(); ++a)
                 if (sources_[s].moves.body_now[static_cast<std::size_t>(table.body[a])] != no_index)
-                    picks.push_back({order_of(whole_.joining_place.back(), table.slot[a]), s, a});
+                    picks.push_back({order_of(whole_.joining_world_row.back(), table.slot[a]), s, a});
         }
         std::ranges::stable_sort(picks, {}, &Pick::order);
         AttachmentTable& to = to_.attachments;
@@ -240,14 +240,14 @@ private:
     }
 
     /// Number by which a row is sorted: its row in the undivided world. Rows without a handle come last.
-    static Index order_of(std::span<const Index> place_of_slot, std::uint32_t slot) {
-        return slot < place_of_slot.size() ? place_of_slot[slot] : std::numeric_limits<Index>::max();
+    static Index order_of(std::span<const Index> world_row_of_slot, std::uint32_t slot) {
+        return slot < world_row_of_slot.size() ? world_row_of_slot[slot] : std::numeric_limits<Index>::max();
     }
 
     void append_joining_rows() {
         std::size_t number = 0;
         to_.for_each_joining([&]<class Table>(const char*, Table& to, auto&) {
-            const std::span<const Index> place_of_slot = whole_.joining_place[number++];
+            const std::span<const Index> world_row_of_slot = whole_.joining_world_row[number++];
             std::vector<Pick> picks;
             std::vector<std::vector<Index>> row_now(sources_.size());
             std::vector<Table*> tables;
@@ -256,7 +256,7 @@ private:
                 tables.push_back(&from);
                 row_now[s].assign(from.slot.size(), no_index);
                 for (const std::size_t row : rows_given(from, sources_[s]))
-                    picks.push_back({order_of(place_of_slot, from.slot[row]), s, row});
+                    picks.push_back({order_of(world_row_of_slot, from.slot[row]), s, row});
             }
             std::ranges::stable_sort(picks, {}, &Pick::order);
             for (std::size_t row = 0; row < picks.size(); ++row) {
@@ -301,7 +301,7 @@ private:
     Model& to_;
     std::vector<std::vector<AnyColumn>> columns_ = columns_by_body_table(to_);
     std::vector<Pick> picks_;  // by new row of BodyTable
-    Column<Index> place_;
+    Column<Index> world_row_;
 };
 
 }  // namespace

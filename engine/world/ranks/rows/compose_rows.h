@@ -15,7 +15,7 @@ namespace skerry {
 /// A model that gives rows to a new model.
 struct RowSource {
     Model* model;
-    std::span<const Index> place;
+    std::span<const Index> world_row;
     std::span<const std::uint8_t>
         marked;           // by row of BodyTable: nonzero for a body that the new model gets; empty: all
     Index watched, kept;  // StepWatch::body and StepWatch::kept

@@ -21,19 +21,20 @@ void copy_rows(AnyTable from, std::size_t count, auto&& wants, AnyTable to) {
 
 /// Converts rows of this rank to numbers that are valid on all ranks, and back. The number of a body is its row in the
 /// undivided world; the number of node n of the first body is n, of node n of the second body ~n.
-class PlacesOfContacts {
+class WorldRowsOfContacts {
 public:
-    PlacesOfContacts(const Model& model, std::span<const Index> place) : model_(model), place_(place) {}
+    WorldRowsOfContacts(const Model& model, std::span<const Index> row_in_world)
+        : model_(model), world_row_(row_in_world) {}
 
-    void to_places(ContactTable& contacts) const {
+    void to_world_rows(ContactTable& contacts) const {
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             for (Index& node : contacts.stencil[c].node) {
                 const Index body = model_.nodes.body[node];
                 node -= first_node(body);
                 if (body != contacts.first_body[c]) node = ~node;
             }
-            contacts.first_body[c] = place(contacts.first_body[c]);
-            contacts.second_body[c] = place(contacts.second_body[c]);
+            contacts.first_body[c] = world_row(contacts.first_body[c]);
+            contacts.second_body[c] = world_row(contacts.second_body[c]);
         }
     }
     void to_rows(ContactTable& contacts) const {
@@ -45,11 +46,11 @@ public:
                     node < 0 ? first_node(contacts.second_body[c]) + ~node : first_node(contacts.first_body[c]) + node;
         }
     }
-    void to_places(PairTable& pairs) const {
-        for (std::size_t p = 0; p < pairs.size(); ++p) convert(pairs, p, [&](Index of) { return place(of); });
+    void to_world_rows(PairTable& pairs) const {
+        for (std::size_t p = 0; p < pairs.size(); ++p) convert(pairs, p, [&](Index body) { return world_row(body); });
     }
     void to_rows(PairTable& pairs) const {
-        for (std::size_t p = 0; p < pairs.size(); ++p) convert(pairs, p, [&](Index of) { return row(of); });
+        for (std::size_t p = 0; p < pairs.size(); ++p) convert(pairs, p, [&](Index body) { return row(body); });
     }
 
 private:
@@ -58,11 +59,13 @@ private:
         if (pairs.kind[p] != PairKind::collider) pairs.second[p] = number(pairs.second[p]);
     }
     Index first_node(Index body) const { return model_.bodies.nodes[body].begin; }
-    Index place(Index row) const { return row == no_index ? no_index : place_[static_cast<std::size_t>(row)]; }
-    Index row(Index place) const { return place == no_index ? no_index : row_of_place(place_, place); }
+    Index world_row(Index row) const { return row == no_index ? no_index : world_row_[static_cast<std::size_t>(row)]; }
+    Index row(Index row_in_world) const {
+        return row_in_world == no_index ? no_index : local_row(world_row_, row_in_world);
+    }
 
     const Model& model_;
-    std::span<const Index> place_;
+    std::span<const Index> world_row_;
 };
 
 /// Copies all contacts of pairs for which wants(key) is true.
@@ -120,10 +123,10 @@ void reorder_lists(std::span<const std::size_t> order, auto& lists) {
 
 /// Rows of a table for which wants(row) is false, as ascending ranges.
 std::vector<Range> unwanted(std::size_t count, auto&& wants) {
-    std::vector<Range> gone;
+    std::vector<Range> removed;
     for (std::size_t row = 0; row < count; ++row)
-        if (!wants(row)) append_gone(Range{static_cast<Index>(row), static_cast<Index>(row) + 1}, gone);
-    return gone;
+        if (!wants(row)) append_gone(Range{static_cast<Index>(row), static_cast<Index>(row) + 1}, removed);
+    return removed;
 }
 
 /// Renumbers crossings that earlier attempts at the present step have found. Removes those of bodies without a new row.
@@ -147,20 +150,20 @@ void renumber_crossings(const RowMoves& moves, std::span<const Index> body_of_no
 }  // namespace
 
 void copy_contacts(WorldState& world, const WantsPair& wants, BodyRows& to) {
-    const PlacesOfContacts places(world.model, world.ranks.place);
+    const WorldRowsOfContacts converter(world.model, world.ranks.world_row);
     ContactCache& cache = world.cache;
     copy_warm_start(cache.warm_start, wants, to.warm_start);
     copy_rows(
         cache.resting, cache.resting.size(), [&](std::size_t c) { return wants(cache.resting.contact.key[c].pair); },
         to.resting);
-    places.to_places(to.resting.contact);
+    converter.to_world_rows(to.resting.contact);
     copy_rows(
         cache.pairs, cache.pairs.size(),
         [&](std::size_t p) { return cache.pairs.state[p] == PairState::overlapping && wants(cache.pairs.key[p]); },
         to.pairs);
-    places.to_places(to.pairs);
+    converter.to_world_rows(to.pairs);
     copy_rows_of_pairs(world.scratch.contacts, wants, to.contacts);
-    places.to_places(to.contacts);
+    converter.to_world_rows(to.contacts);
 }
 
 void keep_contacts(const RowMoves& moves, std::span<const Index> body_of_node, const WantsPair& keeps,
@@ -191,7 +194,7 @@ void keep_contacts(const RowMoves& moves, std::span<const Index> body_of_node, c
 }
 
 void add_contacts(std::span<BodyRows> added, WorldState& world) {
-    const PlacesOfContacts places(world.model, world.ranks.place);
+    const WorldRowsOfContacts converter(world.model, world.ranks.world_row);
     ContactCache& cache = world.cache;
     WarmStartTable& warm = cache.warm_start;
     ContactTable& contacts = world.scratch.contacts;
@@ -202,11 +205,11 @@ void add_contacts(std::span<BodyRows> added, WorldState& world) {
     pairs.leaf_pairs.resize(pairs.size());
     for (BodyRows& rows : added) {
         copy_warm_start(rows.warm_start, everything, warm);
-        places.to_rows(rows.resting.contact);
+        converter.to_rows(rows.resting.contact);
         copy_rows(rows.resting, rows.resting.size(), everything, cache.resting);
-        places.to_rows(rows.contacts);
+        converter.to_rows(rows.contacts);
         copy_rows_of_pairs(rows.contacts, everything, contacts);
-        places.to_rows(rows.pairs);
+        converter.to_rows(rows.pairs);
         std::ranges::fill(rows.pairs.valid_until, SearchState::forgotten);
         copy_rows(rows.pairs, rows.pairs.size(), everything, pairs);
     }

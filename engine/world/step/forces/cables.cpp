@@ -16,9 +16,9 @@ void list_cables(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage("forces/prepare_cables", prepare_cables,
             inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep),
-            inputs<CableTimes>(w.clock.time, p.h, p.kick, p.solver.recovery_speed), make(w.scratch.cables));
+            inputs<CableTimes>(w.clock.time, p.h, p.kick_time, p.solver.recovery_speed), make(w.scratch.cables));
     const auto if_forced = only_if([](bool forced) { return forced; }, value(m.forced));
-    g.stage("forces/add_cable_forces", add_cable_forces, read(w.scratch.cables), value(p.kick),
+    g.stage("forces/add_cable_forces", add_cable_forces, read(w.scratch.cables), value(p.kick_time),
             write(m.nodes.applied_force), if_forced);
 }
 

@@ -20,7 +20,7 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     const auto if_any = only_if([](std::span<const CavityLaw> law) { return !law.empty(); }, read(c.law));
     g.stage("forces/add_cavity_forces", add_cavity_forces, inputs<CavityInputs>(c, w.model.bodies, w.model.nodes),
-            value(w.clock.time), value(p.lag), value(p.kick), outputs<CavityOutputs>(c, w.model.nodes), if_any);
+            value(w.clock.time), value(p.lag), value(p.kick_time), outputs<CavityOutputs>(c, w.model.nodes), if_any);
 }
 
 /// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]: the bound

@@ -30,8 +30,8 @@ void list_spring_forces(WorldState& w, TaskGraph& g) {
             inputs<DampedAnchors>(m.springs, m.bodies), inputs<ImplicitTimes>(p.h, p.theta, p.long_step),
             make(m.stiff_bodies), outputs<AnchorResponses>(m.springs), if_any_spring(m));
     g.stage("forces/add_spring_forces", add_spring_forces, spring_inputs(m),
-            inputs<SpringMasses>(m.springs, m.bodies, m.rigid_bodies), value(w.clock.time), value(p.h), value(p.kick),
-            write(m.springs.next), write(m.nodes.applied_force), if_any_spring(m));
+            inputs<SpringMasses>(m.springs, m.bodies, m.rigid_bodies), value(w.clock.time), value(p.h),
+            value(p.kick_time), write(m.springs.next), write(m.nodes.applied_force), if_any_spring(m));
 }
 
 void list_driven_springs(WorldState& w, TaskGraph& g) {
@@ -51,7 +51,7 @@ void list_spring_measures(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("forces/measure_springs", w.scratch.findings.springs, measure_springs, spring_inputs(m),
                         inputs<SpringWorkInputs>(m.springs, m.nodes, m.bodies, m.rigid_bodies), value(p.h),
-                        value(p.kick), value(p.work_lag), if_any_spring(m));
+                        value(p.kick_time), value(p.work_lag), if_any_spring(m));
 }
 
 void list_spring_memory(WorldState& w, TaskGraph& g) {

@@ -15,7 +15,7 @@ void list_cable_measures(WorldState& w, TaskGraph& g) {
 void list_cable_memory(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage("forces/store_cables", store_cables, read(w.scratch.cables),
-            inputs<CableTimes>(w.clock.time, p.h, p.kick, p.solver.recovery_speed),
+            inputs<CableTimes>(w.clock.time, p.h, p.kick_time, p.solver.recovery_speed),
             outputs<CableMemory>(w.model.cables), if_taken(w));
 }
 

@@ -34,10 +34,10 @@ void list_search(WorldState& w, TaskGraph& g) {
             only_if([](const Column<std::uint32_t>& slot) { return !slot.empty(); }, value(m.surface_sets.slot)));
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
-            read(w.cache.resting), value(p.kick), write(c.impulse), if_warm);
+            read(w.cache.resting), value(p.kick_time), write(c.impulse), if_warm);
     const auto if_frames = only_if([](const Column<Real>& mass) { return !mass.empty(); }, value(m.rigid_bodies.mass));
     g.stage("contact/hand_on_impulses", hand_on_impulses, inputs<ContactsNow>(c, m.bodies), read(w.cache.warm_start),
-            value(p.kick), write(c.impulse), if_warm, if_frames);
+            value(p.kick_time), write(c.impulse), if_warm, if_frames);
     list_row_exchange(w, g);
 }
 
@@ -66,11 +66,11 @@ void list_memory(WorldState& w, TaskGraph& g) {
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
     g.stage("contact/store_warm_start", store_warm_start,
-            inputs<ContactsDone>(c, m.rigid_bodies, m.of_ranks.has_frames), value(p.kick), make(w.cache.warm_start),
-            if_taken(w));
+            inputs<ContactsDone>(c, m.rigid_bodies, m.of_ranks.has_frames), value(p.kick_time),
+            make(w.cache.warm_start), if_taken(w));
     g.stage("contact/keep_resting_contacts", keep_resting_contacts, read(c),
-            inputs<RestingInputs>(w.cache.pairs, m.bodies, m.colliders), value(p.kick), make(w.scratch.resting_memory),
-            make(w.cache.resting), if_taken(w));
+            inputs<RestingInputs>(w.cache.pairs, m.bodies, m.colliders), value(p.kick_time),
+            make(w.scratch.resting_memory), make(w.cache.resting), if_taken(w));
 }
 
 }  // namespace

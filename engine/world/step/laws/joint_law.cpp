@@ -11,7 +11,7 @@ void list_joint_rows(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/prepare_joints", prepare_joints,
             inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(w.clock.time),
-            value(w.scratch.parameters.h), value(w.scratch.parameters.kick), make(w.scratch.joints));
+            value(w.scratch.parameters.h), value(w.scratch.parameters.kick_time), make(w.scratch.joints));
 }
 
 void list_joint_measures(WorldState& w, TaskGraph& g) {
@@ -20,7 +20,7 @@ void list_joint_measures(WorldState& w, TaskGraph& g) {
 }
 
 void list_joint_memory(WorldState& w, TaskGraph& g) {
-    g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(w.scratch.parameters.kick),
+    g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(w.scratch.parameters.kick_time),
             outputs<JointMemory>(w.model.joints), if_taken(w));
 }
 

@@ -16,12 +16,12 @@ auto if_any_tie(const Model& m) {
 
 bool prepare_tie_rows(const TieInputs& ties, const StepParameters& p, ContactTable& contacts, TieRowTable& rows,
                       CableBlockTable& blocks) {
-    const TieStep step{p.h, p.kick, p.solver.recovery_speed, p.solver.warm_start};
+    const TieStep step{p.h, p.kick_time, p.solver.recovery_speed, p.solver.warm_start};
     return prepare_ties(ties, step, contacts, rows, blocks);
 }
 
 Index store(const TieRowTable& rows, const TiedMeans& means, Real start, const StepParameters& p, TieTable& ties) {
-    return store_ties(rows, means, {start + p.h, p.h, p.kick}, ties);
+    return store_ties(rows, means, {start + p.h, p.h, p.kick_time}, ties);
 }
 
 void list_tie_rows(WorldState& w, TaskGraph& g) {

@@ -23,7 +23,7 @@ void list_element_forces(WorldState& w, TaskGraph& g) {
                         outputs<UnstrainedOutputs>(b, e), if_unknown);
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, m.any_idle), read(n.position),
-                        read(n.velocity), value(p.kick), read(e.rotation), outputs<ElementMemory>(e),
+                        read(n.velocity), value(p.kick_time), read(e.rotation), outputs<ElementMemory>(e),
                         outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
 }
 
@@ -34,10 +34,10 @@ void list_prediction(WorldState& w, TaskGraph& g) {
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
-            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.forced, m.any_idle), read(n.velocity), value(p.kick),
-            write(n.force), write(n.velocity_next));
+            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.forced, m.any_idle), read(n.velocity),
+            value(p.kick_time), write(n.force), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", kernels().damp_velocity,
-            inputs<DampingInputs>(k, b, m.materials, n, p.lag, m.any_idle), read(n.velocity), value(p.kick),
+            inputs<DampingInputs>(k, b, m.materials, n, p.lag, m.any_idle), read(n.velocity), value(p.kick_time),
             write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
 }
 

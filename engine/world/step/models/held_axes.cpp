@@ -21,7 +21,7 @@ auto if_axes_held(const Model& m) {
 void list_hold(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/hold_axes", w.scratch.findings.held, hold_axes, hold_inputs(w.model, p), value(p.h),
-                        value(p.kick), value(p.work_lag), write(w.model.nodes.velocity_next),
+                        value(p.kick_time), value(p.work_lag), write(w.model.nodes.velocity_next),
                         make(w.scratch.axis_impulse), if_axes_held(w.model));
 }
 

@@ -18,7 +18,7 @@ void list_implicit_kick(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_inputs(m),
-            inputs<ImplicitLoads>(m.nodes, p.gravity, m.forced, p.kick), inputs<ImplicitSpins>(m.rigid_bodies),
+            inputs<ImplicitLoads>(m.nodes, p.gravity, m.forced, p.kick_time), inputs<ImplicitSpins>(m.rigid_bodies),
             implicit_times(p), make(m.stiff_bodies), outputs<ImplicitKicks>(m.implicit_nodes, m.nodes));
 }
 
@@ -34,7 +34,7 @@ void list_strain(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
-                        implicit_inputs(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.forced, p.kick),
+                        implicit_inputs(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.forced, p.kick_time),
                         inputs<ImplicitSpins>(m.rigid_bodies), implicit_times(p), make(m.stiff_bodies),
                         outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
                         make(w.scratch.strain_parts));

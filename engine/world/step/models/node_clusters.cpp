@@ -14,10 +14,11 @@ void list_stiffening(WorldState& w, TaskGraph& g) {
     ElementBlockTable& e = m.elements;
     const StepParameters& p = w.scratch.parameters;
     const auto if_unknown = only_if([](bool known) { return !known; }, value(p.forces_known));
-    g.stage_with_result(
-        "dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
-        inputs<ElementInputs>(e, m.element_nodes, m.materials), inputs<StiffenInputs>(m.bodies, m.nodes), value(p.kick),
-        outputs<PatchForces>(m.patches, m.element_nodes), outputs<StiffenOutputs>(e, m.clusters), if_unknown);
+    g.stage_with_result("dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
+                        inputs<ElementInputs>(e, m.element_nodes, m.materials),
+                        inputs<StiffenInputs>(m.bodies, m.nodes), value(p.kick_time),
+                        outputs<PatchForces>(m.patches, m.element_nodes), outputs<StiffenOutputs>(e, m.clusters),
+                        if_unknown);
 }
 
 void list_cluster_kick(WorldState& w, TaskGraph& g) {

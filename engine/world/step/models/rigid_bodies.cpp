@@ -15,7 +15,7 @@ void list_rigid_kick(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, rigid_inputs(m),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(m.nodes, p.gravity, m.forced),
-            value(p.h), value(p.kick), outputs<RigidKicks>(m.rigid_bodies, m.nodes));
+            value(p.h), value(p.kick_time), outputs<RigidKicks>(m.rigid_bodies, m.nodes));
 }
 
 /// Lists the stage that computes the pose of each body at the end of the step. The stage also sets velocity_next of
