@@ -51,14 +51,28 @@ void require_finite(std::string_view object, std::string_view field, const Vec3&
     if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }
 
+namespace {
+
+/// True if two parts of messages name one object, such as body "ball" and body 'ball'.
+bool name_one_object(std::string_view a, std::string_view b) {
+    const auto is_quote = [](char c) { return c == '"' || c == '\''; };
+    return !a.empty() &&
+           std::ranges::equal(a, b, [&](char x, char y) { return x == y || (is_quote(x) && is_quote(y)); });
+}
+
+}  // namespace
+
 SceneError error_at(const Complaint& place, const SceneError& inner) {
     Complaint parts = inner.complaint();
+    std::string text = inner.what();
+    if (name_one_object(place.object, parts.object) && text.starts_with(parts.object + ": "))
+        text.erase(0, parts.object.size() + 2);
     if (parts.file.empty()) {
         parts.file = place.file;
         if (!place.object.empty()) parts.object = place.object;
         parts.field = place.field + (place.field.empty() || parts.field.empty() ? "" : ": ") + parts.field;
     }
-    return SceneError(place.text() + inner.what(), parts);
+    return SceneError(place.text() + text, parts);
 }
 
 std::string short_text(Real value, int digits) {
