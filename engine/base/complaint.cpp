@@ -51,15 +51,28 @@ void require_finite(std::string_view object, std::string_view field, const Vec3&
     if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }
 
+namespace {
+
+/// True if two parts of messages name one object, such as body "ball" and body 'ball'.
+bool name_one_object(std::string_view a, std::string_view b) {
+    const auto is_quote = [](char c) { return c == '"' || c == '\''; };
+    return !a.empty() &&
+           std::ranges::equal(a, b, [&](char x, char y) { return x == y || (is_quote(x) && is_quote(y)); });
+}
+
+}  // namespace
+
 SceneError error_at(const Complaint& context, const SceneError& inner) {
     Complaint complaint = inner.complaint();
+    std::string text = inner.what();
+    if (name_one_object(context.object, complaint.object) && text.starts_with(complaint.object + ": "))
+        text.erase(0, complaint.object.size() + 2);
     if (complaint.file.empty()) {
         complaint.file = context.file;
         if (!context.object.empty()) complaint.object = context.object;
-        complaint.field =
-            context.field + (context.field.empty() || complaint.field.empty() ? "" : ": ") + complaint.field;
+        complaint.field = context.field + (context.field.empty() || complaint.field.empty() ? "" : ": ") + complaint.field;
     }
-    return SceneError(context.text() + inner.what(), complaint);
+    return SceneError(context.text() + text, complaint);
 }
 
 std::string short_text(Real value, int digits) {

@@ -20,18 +20,10 @@ namespace skerry {
 
 namespace {
 
-constexpr Real hardly_longer = 1.03;  // ratios of stable steps from 1 / 1.03 to 1.03 are called slight changes
-
-/// Describes a ratio of stable steps: the step of the mesh without its worst tetrahedra, divided by the present step.
-/// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
-/// the neighbouring tetrahedra.
-std::string compared(Real ratio) {
-    if (ratio < 1 / hardly_longer)
-        return short_text(ratio) +
-               " times as long; shorter, because the neighbours of the removed tetrahedra lose mass";
-    if (ratio < 1) return "slightly shorter";
-    return ratio < hardly_longer ? "slightly longer" : short_text(ratio) + " times as long";
-}
+// Least ratio of the stable step without the worst tetrahedra to the stable step for which this step is printed. With a
+// smaller ratio, repairing these tetrahedra gains little. The ratio may be below 1: the neighbours of removed
+// tetrahedra lose mass.
+constexpr Real least_gain = 1.1;
 
 }  // namespace
 
@@ -71,9 +63,10 @@ void print_bound(const StepBound& bound, const char* indent) {
                   << with_unit(t.step, "s") << ": smallest altitude " << with_unit(t.altitude, "m") << ", mean edge "
                   << with_unit(t.mean_edge, "m") << "\n";
     for (const StepWithout& w : bound.without)
-        std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
-                  << short_text(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s") << ", "
-                  << compared(w.step / bound.step) << "\n";
+        if (const Real ratio = w.step / bound.step; ratio >= least_gain)
+            std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
+                      << short_text(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s")
+                      << ", " << short_text(ratio) << " times as long\n";
     if (bound.alike_share > 0)
         std::cout << indent << "removal of the worst " << short_text(100 * bound.alike_share)
                   << " % of the tetrahedra was not tried: their longest step is only " << short_text(bound.alike_ratio)

@@ -9,16 +9,15 @@ from records import by_item, cells, rows_of, write_csv
 
 HEADER = """# Accuracy
 
-This page shows how close the engine comes to known solutions. `scripts/accuracy` runs the tests tagged `[accuracy]` and
-writes this page. An *item* is a known solution. [accuracy.csv](accuracy/accuracy.csv) lists all {rows} checks of
-{items} items, with formulas. In half of the checks the error is less than {median:.1g} of the tolerance. The table
-shows the {shown} items that come nearest to a tolerance, each by its worst check. Errors and tolerances in % are
-relative, others absolute.
+This page shows how closely the engine agrees with known solutions (*items*). `scripts/accuracy` runs the tests tagged
+`[accuracy]` and writes this page. [accuracy.csv](accuracy/accuracy.csv) lists all {rows} checks of {items} items, with
+formulas. Half of the errors are below {median:.1g} of their tolerance. The table shows the worst check of the {shown}
+items that come nearest to a tolerance. Errors and tolerances in % are relative, others absolute.
 
-In the table `n` is a number of elements, `h` the time step or a length, `a` an angle or a radius, `b` an outer radius,
-`R` a radius, `t` a thickness, `m` a mass, `v` a speed, `F` a force, `p` a pressure, `theta_0` a start angle. Bars have
-the length `L`, cross-section `A`, second moment of area `I` and wave speed `c`. `E*` is `E/(1 - nu^2)`. Items without a
-formula use a run with a fine mesh of quadratic tetrahedra.
+Symbols: `n` number of elements, `h` time step or length, `a` angle or radius, `b` outer radius, `R` radius, `t`
+thickness, `m` mass, `v` speed, `F` force, `p` pressure, `theta_0` start angle. Bars have the length `L`, cross-section
+`A`, second moment of area `I` and wave speed `c`. `E*` is `E/(1 - nu^2)`. Items without a formula use a fine mesh of
+quadratic tetrahedra.
 
 | item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|

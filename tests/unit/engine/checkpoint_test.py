@@ -32,6 +32,17 @@ class CheckpointTest(ProgramCase):
         for key in expected.keys() - own:
             self.assertEqual(found[key], expected[key], key)
 
+    def rows_of_a_run_in_two_parts(self, scene):
+        """Checks that a restart continues the series of the scene as a run in one part does, and returns its lines."""
+        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
+        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
+        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
+        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
+        self.assertEqual(parts.read_text(), whole.read_text())
+        lines = whole.read_text().splitlines()
+        self.assertGreater(len(lines), 5)
+        return lines
+
     def test_a_run_that_is_killed_at_any_moment_goes_on_from_its_checkpoint_with_the_same_bits(self):
         scene = self.write("long.json", dict(SCENE, seconds=3, bodies=[
             dict(SCENE["bodies"][0], mesh={"ball": {"radius": 0.1, "resolution": 8}}, position=[0, 0, 0.2]),
@@ -113,22 +124,13 @@ class CheckpointTest(ProgramCase):
         scene = self.write("lever.json", dict(
             SCENE, bodies=[lever], joints=[hinge],
             probes=[{"name": "hinge", "quantity": "joint", "joint": "joint_0"}]))
-        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
-        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
-        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
-        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
-        self.assertEqual(parts.read_text(), whole.read_text())
+        self.rows_of_a_run_in_two_parts(scene)
 
     def test_a_run_with_a_probe_of_a_tie_goes_on_with_the_same_rows(self):
         scene = self.write("tie.json", dict(
             SCENE, ties=[{"name": "tie", "body": "block", "nodes": [0]}],
             probes=[{"name": "tie", "quantity": "tie", "tie": "tie"}]))
-        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
-        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
-        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
-        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
-        self.assertEqual(parts.read_text(), whole.read_text())
-        self.assertGreater(len(whole.read_text().splitlines()), 5)
+        self.rows_of_a_run_in_two_parts(scene)
 
     def test_a_run_with_a_cable_goes_on_with_the_same_rows(self):
         points = [{"point": [0, 0, 1]}, {"body": "block", "point": [0, 0, 0.05]},
@@ -136,12 +138,7 @@ class CheckpointTest(ProgramCase):
         scene = self.write("cable.json", dict(
             SCENE, cables=[{"points": points, "rate": [[0.05, 0], [0.1, -0.2]], "friction": 0.2}],
             probes=[{"name": "tendon", "quantity": "cable", "cable": "cable_0"}]))
-        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
-        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
-        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
-        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
-        self.assertEqual(parts.read_text(), whole.read_text())
-        heading, *_, last = whole.read_text().splitlines()
+        heading, *_, last = self.rows_of_a_run_in_two_parts(scene)
         self.assertIn("tendon.tension_1 [N],tendon.length [m]", heading)
         self.assertGreater(float(last.split(",")[1]), 0)
 
@@ -153,12 +150,7 @@ class CheckpointTest(ProgramCase):
             cavities=[{"body": "block", "pressure": [[0, 0], [0.2, 100]]}],
             probes=[{"name": "cord", "quantity": "spring", "spring": "spring_0"},
                     {"name": "skin", "quantity": "cavity", "cavity": "cavity_0"}]))
-        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
-        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
-        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
-        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
-        self.assertEqual(parts.read_text(), whole.read_text())
-        heading = whole.read_text().splitlines()[0]
+        heading = self.rows_of_a_run_in_two_parts(scene)[0]
         self.assertIn("cord.force [N]", heading)
         self.assertIn("skin.pressure [Pa]", heading)
 

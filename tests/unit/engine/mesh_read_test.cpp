@@ -330,6 +330,8 @@ TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are
                       Contains("line 5: node: found 5, expected 1 to 4"));
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("c.obj", square + "f 1 2 0\n")), Contains("node: found 0"));
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("d.obj", square)), Contains("no triangles"));
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("f.obj", "f 1 2 3\n" + square)),
+                      Contains("line 1: node: found 1, expected a node defined above, but there is none"));
     CHECK_THROWS_WITH(
         mesh::read(folder.write("e.obj", square)),
         Contains(

@@ -157,6 +157,15 @@ class ProgramInspectTest(ProgramCase):
         self.assertAlmostEqual(of_body["worst"][0]["altitude"], 0.2 * worst["altitude"], places=9)
         self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", self.skerry("inspect", scene).stdout)
 
+    def test_inspect_prints_the_step_without_the_worst_tetrahedra_if_it_is_a_tenth_longer(self):
+        for mesh, gains in ((self.bad_box("bad.msh", cells=6), True), (self.bad_box("even.msh", flat=0.5), False)):
+            found = json.loads(self.skerry("inspect", mesh, "--json").stdout)["step_bound"]
+            ratios = [without["stable_dt"] / found["stable_dt"] for without in found["without"]]
+            self.assertTrue(ratios)
+            self.assertEqual(max(ratios) >= 1.1, gains, ratios)
+            self.assertEqual(self.skerry("inspect", mesh).stdout.count("without the worst"),
+                             sum(ratio >= 1.1 for ratio in ratios))
+
     def test_a_part_that_is_too_stiff_in_bending_is_a_problem_and_a_warning(self):
         strip = {"name": "strip", "mesh": {"box": {"size": [0.05, 0.01, 0.001], "cells": [20, 4, 1]}}, "material": "m"}
         stone = {**strip, "name": "stone", "position": [0, 0.1, 0], "dynamics": "rigid"}  # does not bend

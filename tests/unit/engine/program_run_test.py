@@ -67,7 +67,8 @@ class ProgramRunTest(ProgramCase):
         summary = self.skerry("run", self.write("led.json", led), "--stats", stats).stdout
         line = next(line for line in summary.splitlines() if line.startswith("  penetration"))
         self.assertRegex(line, r"held surfaces at most (19\.[0-9]|20) mm")
-        self.assertIn('WARNING       held nodes of body "cube" are up to', summary)
+        self.assertRegex(summary, r'WARNING       held nodes of body "cube" are up to (19\.[0-9]|20) mm deep inside '
+                                  '"floor", and no contact can push them out: correct the place or the motion of one')
         found = json.loads(stats.read_text())["trust"]["penetration"]
         self.assertAlmostEqual(found["held"], 0.02, delta=1e-3)
         self.assertEqual((found["held_body"], found["held_in"]), ("cube", "floor"))
@@ -346,17 +347,6 @@ class ProgramRunTest(ProgramCase):
         scene["probes"] = []
         self.assert_refused("run", self.write("dot.json", scene),
                             message=["block", "mesh, material: found a mean edge length of"])
-
-    def test_a_step_that_gets_shorter_is_not_called_longer(self):
-        for scene in (self.scene, ROOT / "scenes/skittles.json"):
-            kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
-            lines = [line for line in self.skerry("inspect", scene).stdout.splitlines() if "without the worst" in line]
-            steps = [(bound["stable_dt"], without["stable_dt"]) for bound in (kind["step_bound"] for kind in kinds)
-                     for without in bound["without"]]
-            self.assertEqual(len(lines), len(steps))
-            self.assertTrue(lines)
-            for line, (with_it, without) in zip(lines, steps):
-                self.assertEqual("shorter" in line, without < with_it, line)
 
     def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
         slow = self.write("slow.json", SLOW)

@@ -416,12 +416,13 @@ TEST_CASE("an error carries the parts of its message", "[unit]") {
     CHECK_THAT(no_json.object, Catch::StartsWith("line 2, column"));
     CHECK_THAT(no_json.found, Catch::StartsWith("text that is not valid JSON"));
     // The world finds this error. The scene adds the place.
-    const Complaint inner = parts_about(
-        R"({"materials": {"m": {}}, "bodies": [{"name": "block", "material": "m",
-            "shape": {"sphere": {"radius": 1}}, "dynamics": "explicit"}]})");
+    const std::string lone = R"({"materials": {"m": {}}, "bodies": [{"name": "block", "material": "m",
+        "shape": {"sphere": {"radius": 1}}, "dynamics": "explicit"}]})";
+    const Complaint inner = parts_about(lone);
     CHECK(inner.file == "scene");
     CHECK(inner.object == "body \"block\"");
     CHECK(inner.field == "bodies[0]: dynamics");
+    CHECK_THROWS_WITH(load_scene_text(lone, {}), inner.text());  // the body is named once
     CHECK_THAT(inner.found, Catch::Contains("explicit"));
     const SceneError plain("a text");
     CHECK(plain.complaint().text().empty());

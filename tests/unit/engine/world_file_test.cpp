@@ -357,6 +357,7 @@ TEST_CASE("a saved world with a load on a node that does not exist, or with wron
     World world;
     const BodyHandle body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({})});
     Loads(world).add(ForceLoad{body, {1, 2}, {1, 0, 0}, TimeTable({{0, 0}, {1, 1}})});
+    world.add_collider(Plane{}, {.motion = {.keys = {{0, {0, 0, 0}}, {1, {0, 0, 1}}}}});
     const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
     CHECK_THAT(saved.refusal_with("loads/node", 1, 8),
@@ -365,6 +366,12 @@ TEST_CASE("a saved world with a load on a node that does not exist, or with wron
     CHECK_THAT(saved.refusal_with("loads/nodes", 1, 1), Contains("loads: node: found 2 rows, expected 1"));
     CHECK_THAT(saved.refusal_with("loads/scale_keys", 0, 1), Contains("loads: scale_keys"));
     CHECK_THAT(saved.refusal_with("loads/body", 0, -1), Contains("loads: body: found -1"));
+    CHECK_THAT(
+        saved.refusal_with("bodies/nodes", 1, 7),
+        Contains("bodies: nodes: found ranges that end at 7, expected ranges that end at 8, the number of rows"));
+    CHECK_THAT(saved.refusal_with("colliders/script/key_end", 0, 3),
+               Contains("colliders/script: key_end: found 0 to 3 at row 0, expected a range of the 2 rows of "
+                        "colliders/keyframe"));
 }
 
 TEST_CASE("a saved world with a pipe whose bodies or ends do not fit its cavities is refused", "[unit]") {
