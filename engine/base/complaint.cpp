@@ -70,7 +70,8 @@ SceneError error_at(const Complaint& context, const SceneError& inner) {
     if (complaint.file.empty()) {
         complaint.file = context.file;
         if (!context.object.empty()) complaint.object = context.object;
-        complaint.field = context.field + (context.field.empty() || complaint.field.empty() ? "" : ": ") + complaint.field;
+        complaint.field =
+            context.field + (context.field.empty() || complaint.field.empty() ? "" : ": ") + complaint.field;
     }
     return SceneError(context.text() + text, complaint);
 }

@@ -323,9 +323,10 @@ void for_each_column(BodyRows& rows, auto&& visit) {
     for (const AnyColumn& column :
          {AnyColumn(clusters.nodes.offset), AnyColumn(clusters.nodes.item), AnyColumn(clusters.body),
           AnyColumn(clusters.first_entry), AnyColumn(clusters.inverse), AnyColumn(clusters.cluster_of),
-          AnyColumn(clusters.index_in_cluster), AnyColumn(rows.model.watch.position), AnyColumn(rows.model.watch.stiffness_sum),
-          AnyColumn(rows.model.watch.step), AnyColumn(rows.world_row), AnyColumn(rows.watch),
-          AnyColumn(rows.valid_until), AnyColumn(rows.self_crossings), AnyColumn(rows.enabled_pairs)})
+          AnyColumn(clusters.index_in_cluster), AnyColumn(rows.model.watch.position),
+          AnyColumn(rows.model.watch.stiffness_sum), AnyColumn(rows.model.watch.step), AnyColumn(rows.world_row),
+          AnyColumn(rows.watch), AnyColumn(rows.valid_until), AnyColumn(rows.self_crossings),
+          AnyColumn(rows.enabled_pairs)})
         visit(column);
     visit_all(rows.warm_start);
     visit_all(rows.resting);
