@@ -136,12 +136,12 @@ void warn_of_sizes(const ScenePlan& plan, const std::vector<Extent>& extents, st
 }
 
 void warn_of_material(const std::string& name, const MaterialSettings& material, std::vector<std::string>& warnings) {
-    const std::string density_text =
+    const std::string density_part =
         "material \"" + name + "\" has a density of " + short_text(material.density, 4) + " kg/m^3, ";
     if (material.density < least_density)
-        warnings.push_back(density_text + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
+        warnings.push_back(density_part + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
     if (material.density > most_density)
-        warnings.push_back(density_text + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
+        warnings.push_back(density_part + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
     if (material.young_modulus > most_modulus)
         warnings.push_back("material \"" + name + "\" has a Young's modulus of " + short_text(material.young_modulus) +
                            " Pa, more than diamond: is it in Pa?");

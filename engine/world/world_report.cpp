@@ -126,19 +126,19 @@ std::string WorldReport::distrust() const {
 
 std::string StepReport::message() const {
     const std::string body_text = body_name.empty() ? "a body" : "body '" + body_name + "'";
-    const std::string element_text = (node < 0 ? "" : ", node " + std::to_string(node)) +
-                                     (element < 0 ? "" : ", element " + std::to_string(element));
+    const std::string location = (node < 0 ? "" : ", node " + std::to_string(node)) +
+                                 (element < 0 ? "" : ", element " + std::to_string(element));
     switch (status) {
         case StepStatus::ok:
             return {};
         case StepStatus::stopped:
             return "stopped on request, between two steps";
         case StepStatus::not_finite:
-            return "the step was not taken: " + body_text + element_text +
+            return "the step was not taken: " + body_text + location +
                    " would get a velocity that is not finite; check the loads, masses and initial velocities of the "
                    "body";
         case StepStatus::too_fast:
-            return "the step was not taken: " + body_text + element_text + " would deform by a strain of " +
+            return "the step was not taken: " + body_text + location + " would deform by a strain of " +
                    short_text(value) +
                    " in one step, even in 1/1024 of the stable step; lower the velocities and loads of the body";
         case StepStatus::too_far:

@@ -17,13 +17,13 @@ void hold_everywhere(World& world, Ranks& ranks) {
     state.settle();
     note_changed_seams(state.model);
     settle_clusters(state.model, state.scratch.stiffness_sum);
-    RankState& mine = state.ranks;
-    mine.ranks = &ranks;
-    mine.rank = ranks.rank();
+    RankState& rank_state = state.ranks;
+    rank_state.ranks = &ranks;
+    rank_state.rank = ranks.rank();
     for (int rank = 0; rank < ranks.size(); ++rank)
-        if (rank != ranks.rank()) mine.peers.push_back(rank);
+        if (rank != ranks.rank()) rank_state.peers.push_back(rank);
     const BodyTable& bodies = state.model.bodies;
-    std::vector<int> all(mine.peers.size());
+    std::vector<int> all(rank_state.peers.size());
     std::iota(all.begin(), all.end(), 0);
     UnionFind units;
     units.start(bodies.slot.size());
@@ -32,15 +32,15 @@ void hold_everywhere(World& world, Ranks& ranks) {
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         const bool moves = bodies.kind[b] == BodyKind::deformable;
         const auto unit = static_cast<std::size_t>(units.root(static_cast<Index>(b)));
-        mine.owner.push_back(moves ? static_cast<int>(bodies.slot[unit]) % ranks.size() : ranks.rank());
-        mine.holders.push_back(moves ? all : std::vector<int>{});
-        mine.place.push_back(static_cast<Index>(b));
+        rank_state.owner.push_back(moves ? static_cast<int>(bodies.slot[unit]) % ranks.size() : ranks.rank());
+        rank_state.holders.push_back(moves ? all : std::vector<int>{});
+        rank_state.world_row.push_back(static_cast<Index>(b));
     }
     // no rank needs to search for other bodies
-    mine.margin.assign(bodies.slot.size(), infinity);
-    mine.moved.assign(bodies.slot.size(), 0);
-    mine.tried_speed.assign(bodies.slot.size(), 0);
-    mine.whole.searched_step = std::numeric_limits<std::uint64_t>::max() / 2;
+    rank_state.margin.assign(bodies.slot.size(), infinity);
+    rank_state.moved.assign(bodies.slot.size(), 0);
+    rank_state.tried_speed.assign(bodies.slot.size(), 0);
+    rank_state.whole.searched_step = std::numeric_limits<std::uint64_t>::max() / 2;
     note_ghosts(state);
     list_step_again(state);
 }

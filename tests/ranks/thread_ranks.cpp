@@ -116,13 +116,13 @@ public:
         std::memcpy(record.data(), all.front().data(), record.size());
         for (std::size_t r = 1; r < all.size(); ++r) combine(record.data(), all[r].data());
     }
-    std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) override {
+    std::vector<RankMessage> gather_everywhere(std::span<const std::byte> own_message) override {
         ++traffic_.collectives;
-        return everything(mine, "gather_everywhere");
+        return everything(own_message, "gather_everywhere");
     }
-    std::vector<RankMessage> gather(std::span<const std::byte> mine) override {
+    std::vector<RankMessage> gather(std::span<const std::byte> own_message) override {
         ++traffic_.collectives;
-        std::vector<RankMessage> all = everything(mine, "gather");
+        std::vector<RankMessage> all = everything(own_message, "gather");
         if (rank_ != 0) all.clear();
         return all;
     }
@@ -132,8 +132,9 @@ public:
     }
 
 private:
-    std::vector<RankMessage> everything(std::span<const std::byte> mine, const char* call) {
-        for (int r = 0; r < size(); ++r) office_.send(rank_, r, RankMessage(mine.begin(), mine.end()), call);
+    std::vector<RankMessage> everything(std::span<const std::byte> own_message, const char* call) {
+        for (int r = 0; r < size(); ++r)
+            office_.send(rank_, r, RankMessage(own_message.begin(), own_message.end()), call);
         std::vector<RankMessage> all;
         for (int r = 0; r < size(); ++r) all.push_back(office_.receive(r, rank_, call));
         return all;
