@@ -216,8 +216,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
-        // A body with pinned nodes is explicit unless the scene chooses its dynamics: World::attach() would make an
-        // automatically implicit body explicit, and the body would no longer be in the order of the scene.
+        // The engine does not choose the dynamics of bodies with pinned nodes: World::attach() makes such a body
+        // explicit. The plan says so, so that stiff_note() can propose implicit dynamics.
         body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !planned.pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;

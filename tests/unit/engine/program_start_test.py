@@ -136,11 +136,14 @@ class ProgramStartTest(ProgramCase):
                 run.communicate(timeout=60)
             return line
 
-        note = first_line(scene)
-        self.assertIn("skerry: NOTE: ", note)
-        for part in ('body "anvil" is explicit, of material "steel"', "steps, ",
-                     'set "dynamics" of the body to "implicit"'):
-            self.assertIn(part, note)
+        held = {**scene["bodies"][1], "pin": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 0]}}}
+        del held["dynamics"]
+        for anvil in (held, scene["bodies"][1]):
+            note = first_line({**scene, "bodies": [scene["bodies"][0], anvil]})
+            self.assertIn("skerry: NOTE: ", note)
+            for part in ('body "anvil" is explicit, of material "steel"', "steps, ",
+                         'set "dynamics" of the body to "implicit"'):
+                self.assertIn(part, note)
         self.assertNotIn("NOTE", self.skerry("run", self.folder / "anvil.json", "--seconds", 0.001).stderr)
         scene["bodies"][1]["dynamics"] = "implicit"
         self.assertIn("s to simulate", first_line(scene))

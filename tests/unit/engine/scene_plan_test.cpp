@@ -3,7 +3,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "engine/scene/scene_plan.h"
 #include "skerry/joint.h"
@@ -426,19 +425,6 @@ TEST_CASE("the dynamics of a body in a scene do not depend on the order of the b
     const Found both{{"stiff", BodyDynamics::explicit_elastic}, {"soft", BodyDynamics::explicit_elastic}};
     CHECK(dynamics(soft + ", " + stiff) == both);
     CHECK(dynamics(stiff + ", " + soft) == both);
-}
-
-TEST_CASE("a stiff body with pins is explicit, and the bodies stay in the order of the scene", "[unit]") {
-    const TemporaryFolder folder;
-    const Scene scene = build_scene(plan_scene(folder.write("s.json", R"({"materials": {"firm": {"E": 1e8}}, "bodies": [
-        {"mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [4, 4, 4]}}, "name": "held", "material": "firm",
-         "pin": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, -0.04]}}},
-        {"mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [4, 4, 4]}}, "name": "free", "material": "firm",
-         "position": [0, 0, 2]}]})")));
-    std::vector<std::string> names;
-    for (const BodyHandle body : scene.world.bodies()) names.push_back(scene.world.name(body));
-    CHECK(names == std::vector<std::string>{"held", "free"});
-    CHECK(scene.world.dynamics(scene.world.bodies()[0]) == BodyDynamics::explicit_elastic);
 }
 
 }  // namespace skerry::test::scene_plan_test
