@@ -1,9 +1,7 @@
 // Implicit elements and their matrices against dense textbook matrices (docs/methods/clusters.md 2, 3).
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
-#include <functional>
 #include <limits>
 #include <random>
 
@@ -239,26 +237,17 @@ TEST_CASE("few elements are implicit but those that need the most", "[unit][clus
 
 namespace {
 
-/// Fraction of the masses of its nodes that each element needs to be stable at `step`.
-std::vector<Real> needs_of(const SliverBox& box, Real step) {
-    const ElementInputs in = box.body.inputs();
-    const LaneQuaternion<Real8> unit{Real8{} + 1.0, {}, {}, {}};
-    std::vector<Real> need;
-    for (std::size_t b = 0; b < in.blocks(); ++b) {
-        LaneQuaternion<Real8> q = unit;
-        const LaneMat3<Real8> F = deformation_of(in, b, box.body.position);
-        const Real8 bound = frequency_squared_of(in, b, F, box.body.mass, {}, q);
-        for (std::size_t l = 0; l < element_lanes; ++l) need.push_back(bound[l] * step * step / (1.8 * 1.8));
-    }
-    return need;
-}
-
 /// Plain version of the search in docs/methods/clusters.md 3, without state carried from step to step.
 class SimpleSearch {
 public:
     SimpleSearch(SliverBox& box, Real step) : box_(box), in_(box.body.inputs()), step_(step), own_(in_.blocks()) {
         start_mass_shares(in_, box.body.blocks, box.body.elements.mass_share);
-        need_ = needs_of(box, step);
+        LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+        for (std::size_t b = 0; b < in_.blocks(); ++b) {
+            const LaneMat3<Real8> F = deformation_of(in_, b, box.body.position);
+            const Real8 bound = frequency_squared_of(in_, b, F, box.body.mass, {}, q);
+            for (std::size_t l = 0; l < element_lanes; ++l) need_.push_back(bound[l] * step * step / (1.8 * 1.8));
+        }
         for_each_element([&](std::size_t e) {
             if (need_[e] > 1) this->share(e) = 0;
         });
@@ -395,37 +384,6 @@ TEST_CASE("the volume that must be implicit is small for slivers, and large in a
     SliverBox slivers(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 2,
                       test::sliver_box(0.2, 6, 0.02, 0.005));
     CHECK(slivers.search().estimate_volume(2 * slivers.plain_step) < 0.05);
-}
-
-TEST_CASE("the estimate of the implicit volume counts the mass of each node of an element once", "[unit][clusters]") {
-    const test::TetMesh mesh = test::jittered_box({4, 4, 4}, 0.05, 0.3, 1);  // no two elements need the same mass
-    SliverBox box(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 2,
-                  {.nodes = mesh.nodes, .tetrahedra = mesh.tetrahedra});
-    for (const Real longer : {1.5, 2.0, 3.0}) {
-        const std::vector<Real> need = needs_of(box, longer * box.plain_step);
-        std::vector<std::array<Real, 3>> demands;  // mass over volume [kg/m^3], mass [kg], volume [m^3]
-        Real lacking = 0, total = 0;
-        for (const Real mass : box.body.mass) lacking -= mass;
-        for (std::size_t e = 0; e < need.size(); ++e) {
-            const Real volume = box.body.volume(e);
-            if (!(volume > 0)) continue;  // an unused lane
-            Real mass = 0;
-            const std::size_t nodes = box.body.list.nodes_of(static_cast<std::size_t>(box.body.element_at[e]));
-            for (std::size_t k = 0; k < nodes; ++k) mass += box.body.mass[box.body.node(e, k)];
-            demands.push_back({need[e] * mass / volume, need[e] * mass, volume});
-            lacking += need[e] * mass;
-            total += volume;
-        }
-        std::ranges::sort(demands, std::greater<>());
-        Real implicit = 0;
-        for (std::size_t i = 0; i < demands.size() && lacking > 0; ++i) {
-            lacking -= demands[i][1];
-            implicit += demands[i][2];
-        }
-        CAPTURE(longer);
-        CHECK(implicit > 0);
-        CHECK(box.search().estimate_volume(longer * box.plain_step) == Approx(implicit / total).epsilon(1e-9));
-    }
 }
 
 TEST_CASE("masses at the nodes add to a moment of inertia as the square of an edge", "[unit][clusters]") {

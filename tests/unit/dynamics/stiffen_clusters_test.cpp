@@ -2,7 +2,9 @@
 // 3).
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -62,6 +64,42 @@ TEST_CASE("an estimate of the implicit volume leaves mass shares and moduli as t
     const auto equal = [](const ElementLane& a, const ElementLane& b) { return std::ranges::equal(a.lane, b.lane); };
     CHECK(std::ranges::equal(share, shares, equal));
     CHECK(std::ranges::equal(modulus, moduli, equal));
+}
+
+TEST_CASE("an estimate of the implicit volume counts the mass of each node of an element once", "[unit][clusters]") {
+    const test::TetMesh mesh = test::jittered_box({4, 4, 4}, 0.05, 0.3, 1);  // no two elements need the same mass
+    SliverBox box(ElementKind::edge_node_smoothed, {.nodes = mesh.nodes, .tetrahedra = mesh.tetrahedra});
+    test::ElasticBody& body = box.body;
+    std::vector<ElementLane> frequency(body.elements.mass_share.size());  // squared angular frequencies [1/s^2]
+    lone_frequencies(body.inputs(), body.blocks, body.position, body.mass, frequency);
+    std::vector<Real> sums(body.position.size());
+    const ImplicitSearch search(body.inputs(), body.blocks, body.position, body.mass, sums,
+                                {body.elements.mass_share, body.elements.implicit_modulus});
+    for (const Real step : {0.5 * box.cluster_step[0], 0.7 * box.cluster_step[0], box.cluster_step[0]}) {
+        std::vector<std::array<Real, 3>> demands;  // mass over volume [kg/m^3], mass [kg], volume [m^3]
+        Real lacking = 0, total = 0;
+        for (const Real mass : body.mass) lacking -= mass;
+        for (std::size_t e = 0; e < body.element_at.size(); ++e) {
+            const Real volume = body.volume(e);
+            if (!(volume > 0)) continue;  // an unused lane
+            const std::size_t nodes = body.list.nodes_of(static_cast<std::size_t>(body.element_at[e]));
+            Real mass = 0;
+            for (std::size_t k = 0; k < nodes; ++k) mass += body.mass[body.node(e, k)];
+            mass *= frequency[e / element_lanes][e % element_lanes] * step * step / (1.8 * 1.8);
+            demands.push_back({mass / volume, mass, volume});
+            lacking += mass;
+            total += volume;
+        }
+        std::ranges::sort(demands, std::greater<>());
+        Real implicit = 0;
+        for (std::size_t i = 0; i < demands.size() && lacking > 0; ++i) {
+            lacking -= demands[i][1];
+            implicit += demands[i][2];
+        }
+        CAPTURE(step);
+        CHECK(implicit > 0);
+        CHECK(search.estimate_volume(step) == Approx(implicit / total).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("bounds by forces find all elements that stiffen, as a test of every element does", "[unit][clusters]") {
