@@ -108,8 +108,9 @@ struct PairTable {
     // the body's frame.
     Column<Real> travel;
     Column<Real> travel_bound;  // `travel` plus the distance by which the partners may approach in this step [m]
-    // Distance by which the partners may approach in this step at their greatest speeds [m]. Contacts depend on it, so
-    // it is computed from velocities in the world: the moving frames of the bodies are not part of the state.
+    // Distance by which the partners may approach in this step at their greatest speeds [m]. It is computed from
+    // velocities in the world, because contacts depend on it: a restored world does not have the moving frames of its
+    // bodies, but must find the same contacts.
     Column<Real> closing;
     // Relative motion of the partners for which an earlier attempt at this step requested a longer candidate list [m];
     // 0: no request. Once the list has been rebuilt for this motion, the value is made negative, so that a list is not

@@ -37,8 +37,8 @@ private:
         Deformation deformation{};                 // deformation at the last sample; empty for a rigid body
         Real first_step = 0;                       // mean length of the steps before the second sample [s]
         Real acceleration = -1;                    // mean acceleration until the second sample; -1: unknown [m/s^2]
-        // Position error because bodies rebound in wrong directions or too late [m], and the part of its rate that
-        // comes from wrong directions [m/s].
+        // Position error because bodies rebound in wrong directions or too late [m]. deflection_rate: velocity error
+        // due to wrong directions, by which `deflected` grows until the next sample [m/s].
         Real deflected = 0, deflection_rate = 0;
         Real tumbled = 0;  // position error due to free rotation [m]
         // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the

@@ -75,8 +75,8 @@ Mesh without_tetrahedra(const Mesh& mesh, std::span<const Index> removed) {
 // Number of tetrahedra above which a mesh counts as large. It takes seconds to build another world with such a mesh.
 constexpr std::size_t many = 100'000;
 
-/// Returns the longest step that one of the `count` worst tetrahedra allows, divided by the shortest step. The worst
-/// tetrahedra are those with the shortest steps.
+/// Ratio of the longest to the shortest step that the `count` worst tetrahedra allow. The worst tetrahedra are those
+/// with the shortest steps.
 Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     std::vector<Real> sorted(step.begin(), step.end());
     const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(count - 1);

@@ -37,8 +37,8 @@ struct StepBound {
     // smallest one by less than 10 % are sorted by altitude.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // In a mesh of more than 100,000 tetrahedra, a fraction of worst tetrahedra is not removed if their steps are too
-    // similar. alike_share is then the largest fraction that was skipped, and alike_ratio the ratio of the longest to
+    // In a mesh of more than 100,000 tetrahedra, `without` skips fractions of worst tetrahedra whose steps are too
+    // similar, to save time. alike_share is the largest fraction skipped, and alike_ratio the ratio of the longest to
     // the shortest step in it. Both are 0 if nothing was skipped.
     Real alike_share = 0;
     Real alike_ratio = 0;

@@ -67,7 +67,7 @@ inline Real near_distance(const PairScale& scale, Real closing) {
 struct PairContacts : PairData {
     const CollisionSettings& settings;
     const Real h;
-    const Real travel_base;  // travel T0 of the pair from which bounds are counted (contact_reach.h) [m]
+    const Real travel_base;  // value of PairTable::travel from which `asleep_until` counts: T0 in contact_reach.h [m]
     const Real near;         // contacts are computed up to this distance of the features (near_distance) [m]
     const bool held_apart;   // true: contacts and find_crossings have kept the two surfaces apart
     std::span<Real> asleep_until;

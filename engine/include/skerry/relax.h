@@ -21,8 +21,8 @@ struct RelaxSettings {
     int max_steps = 100000;  // largest number of steps for each load step, >= 1
     // 1: the loads act in full from the start. More: forces, tractions and accelerations of loads and of
     // World::set_loads, and prescribed pressures and tensions (of cables and fibres), grow from zero in this number of
-    // equal load steps, each of which ends in equilibrium. Weight and drag act in full. If a load step finds no
-    // equilibrium, it is halved, at most six times.
+    // equal load steps, each of which ends in equilibrium. Weight and drag act in full from the start. If a load step
+    // finds no equilibrium, it is halved, at most six times.
     int load_steps = 1;
 };
 

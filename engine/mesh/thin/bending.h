@@ -9,8 +9,8 @@
 
 namespace skerry::mesh {
 
-/// A column of a part, and the direction of the axis that becomes curved when the part is bent: `tangent`, a unit
-/// vector perpendicular to the column.
+/// A column of cells through the thickness of a thin part, and a unit vector `tangent` perpendicular to the column:
+/// the direction of the axis that becomes curved when the part is bent.
 struct BentColumn {
     const ThinColumn* column;
     Vec3 tangent;

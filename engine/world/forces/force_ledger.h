@@ -67,10 +67,10 @@ public:
     /// a collider.
     Real seconds_on(const Model& model, Index row) const;
     /// Time for which forces have acted between the objects of a pair in this call [s]. If all bodies of the pair are
-    /// implicit, it is the sum of the step lengths. Otherwise it is the sum of the kicks of the steps.
+    /// implicit, it is the sum of the step lengths. Otherwise it is the sum of their StepParameters::kick_time.
     Real seconds_of(const Model& model, const PairKey& key) const;
-    /// True if the call was long enough for contact forces to be measured. Gaps that the step before the call has left
-    /// open may stay open during a call that is much shorter than that step.
+    /// True if the call was long enough for contact forces to be measured. A step may leave gaps open that a much
+    /// shorter call does not close, so that these contacts would have no force.
     bool shows_contacts() const;
     /// True if the force of an attachment counts as measured. This needs small rounding errors of positions and
     /// velocities and, on a rigid body, that shows_contacts() is true. On a sleeping body the force counts as measured

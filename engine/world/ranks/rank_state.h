@@ -57,7 +57,7 @@ struct RankSleep {
     // no_index: none yet.
     Column<Index> node_of_body, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
-    UnionFind joined;               // sets of all ranks, joined where they share a body
+    UnionFind joined;               // sets of touching bodies that the ranks found, joined where they share a body
 };
 
 /// A body that a rank must hold to solve a region.

@@ -36,8 +36,8 @@ struct NamedBody {
 /// Returns the handle and name of a body, even if only other ranks hold it. `world_row`: row of the body in the
 /// undivided world; without ranks, its row in BodyTable.
 NamedBody name_body(const WorldState& world, Index world_row);
-/// Returns the row in the undivided world of the body with the shortest stable step. `row`: row of this body as
-/// stable_step has set it (its argument `body`).
+/// Returns the row in the undivided world of the body with the shortest stable step. `row`: result of the argument
+/// `body` of stable_step.
 Index world_row_of_stiffest(const WorldState& world, Index row);
 
 // ranks/lead_ghosts.cpp
@@ -198,7 +198,7 @@ struct StepPlan {
     Real steps = 1;   // number of steps of length `h` until the end of the planned interval
     Real stable = 0;  // longest step that stability and the settings allow [s]
     // Length `stable`, or less if bodies with joints or ties would rotate too far in such a step (step_of_turns) [s].
-    // Attempts are shortened down to a fraction of this length.
+    // Shorter attempts have at least a certain fraction of this length.
     Real regular = 0;
     // row in BodyTable of the body with the shortest stable step; no_index if this step comes from Model::of_ranks
     Index stiffest = no_index;

@@ -93,7 +93,7 @@ private:
 
     Column<Run> run_;
     Column<Patch> patch_;
-    Column<Index> node_;                             // rows of the region, ascending within a patch
+    Column<Index> node_;                             // rows of nodes in the region, ascending within a patch
     Column<Vec4> pending_;                           // impulse sum by index in node_ [N s]
     Column<std::array<MovedNodes, 4>> moved_nodes_;  // by contact
     Column<PaddedMat3> block_;  // responses of node velocities to impulses on nodes, in world axes [1/kg]

@@ -98,8 +98,8 @@ struct RegionMemory {
     // For regions with joints or cables: index of the first row of the region. The contacts of the region come first,
     // then the joints, then the points of the cables.
     Column<std::size_t> joint_base;
-    // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints or
-    // cables.
+    // contact_rows: number of rows of all contacts. rows: contact_rows plus the rows of regions with joints or cables,
+    // whose contacts have rows here as well.
     std::size_t contact_rows = 0, rows = 0;
     Column<Vec4> free_velocity;  // by row of `velocity`; empty if no step has needed BodyOperator [m/s]
     // For each row of NodeTable: index that the node received last in the list of its region (NodeList). It is outdated

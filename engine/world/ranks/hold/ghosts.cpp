@@ -27,8 +27,8 @@ constexpr Real contact_cost = 10;
 /// Cost of a body apart from its elements and contacts, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
-/// Distance by which a body may move before its holders are found again [m]: about the size of its surface elements,
-/// plus its path in steps_of_margin steps. `speed`: greatest speed of a node [m/s].
+/// Distance by which a body may move before the ranks that must hold it are found again [m]: about the size of its
+/// surface elements, plus its path in steps_of_margin steps. `speed`: greatest speed of a node [m/s].
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
     const Model& model = world.model;
     Real h = std::max(world.clock.step_before, world.scratch.parameters.h);

@@ -39,7 +39,8 @@ struct WholeWorld {
     // For each row of the undivided world: ranks that hold the body, ascending.
     std::vector<std::vector<int>> holders;
     std::vector<FetchedUnit> fetched;
-    std::uint64_t searched_step = 0;  // number of steps of the run at the last rank search
+    // number of steps of the run when ranks last searched for bodies that they must hold
+    std::uint64_t searched_step = 0;
     RankSettings settings;
 
     std::size_t size() const { return owner.size(); }
