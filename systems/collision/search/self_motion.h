@@ -20,7 +20,8 @@
 // 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of pairs with M <= R
 //    are compared again, and those with D(t) < zone + max(m, k S, R) are listed; this maximum is the new M. m is
 //    SelfMotion::skin, S(a, b) bounds the relative motion in one step, and k is steps_ahead. The term k S gives fast
-//    pairs a larger M, so that they are not compared in every step.
+//    pairs a larger M, so that they are not compared in every step. Leaves that are farther apart than zone + M along
+//    some line need no comparison.
 // 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself represents all other
 //    pairs. If it expires, the close pairs are listed again.
 //
@@ -28,7 +29,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
+#include "components/lanes.h"
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/inputs/contact_reach.h"
@@ -47,9 +50,16 @@ inline constexpr Real listed_edges = 1;
 // SelfMotion::skin, because a search has a fixed cost.
 inline constexpr Real renewed_part = 0.5;
 
-/// Largest distance between a point in one box and a point in another box.
+/// Largest distance between a point in one box and a point in another box. Three lanes of a register hold the
+/// coordinates; the fourth is not used.
 inline Real farthest(const Aabb& a, const Aabb& b) {
-    return (a.upper - b.lower).cwiseMax(b.upper - a.lower).norm();
+    const auto upper = [](const Aabb& box) {
+        const Real4 last = half_at(box.lower.data() + 2);  // the last coordinate of `lower`, then those of `upper`
+        return __builtin_shufflevector(last, last, 1, 2, 3, 0);
+    };
+    const Real4 there = upper(a) - half_at(b.lower.data()), back = upper(b) - half_at(a.lower.data()),
+                further = there > back ? there : back, squared = further * further;
+    return std::sqrt(squared[0] + squared[1] + squared[2]);
 }
 
 /// One body whose parts move relative to each other, and the length h of the step.
