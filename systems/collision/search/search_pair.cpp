@@ -202,9 +202,9 @@ private:
         for_each_lane(near, [&](std::size_t lane) {
             const Index triangle = leaf_triangle(other)[lane];
             enqueue({point_triangle_feature(points_on_second && !Self, vertex - vertices(points_on_second).begin,
-                                        triangle - triangles(points_on_second).begin),
-                 vertex, triangle},
-                {n, corner[0][lane], corner[1][lane], corner[2][lane]});
+                                            triangle - triangles(points_on_second).begin),
+                     vertex, triangle},
+                    {n, corner[0][lane], corner[1][lane], corner[2][lane]});
         });
     }
 
@@ -219,7 +219,7 @@ private:
             if (Self && lanes != 0) lanes &= ~lanes_with(end, own);
             for_each_lane(lanes, [&](std::size_t lane) {
                 enqueue(edges_candidate(a.row(i), b.row(leaf_lanes * group + lane)),
-                    {own[0], own[1], end[0][lane], end[1][lane]});
+                        {own[0], own[1], end[0][lane], end[1][lane]});
             });
         }
     }

@@ -252,7 +252,8 @@ void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool 
         first = pair.first;
         if (!compare_all && pair.spare > std::max(greatest_reach, renewal_fraction * motion.skin)) continue;
         const Real margin = motion.margin_of(self, a, b);
-        if (pair.spare > (compare_all ? margin : std::max(motion.reach_of(self, a, b), renewal_fraction * motion.skin))) continue;
+        if (pair.spare > (compare_all ? margin : std::max(motion.reach_of(self, a, b), renewal_fraction * motion.skin)))
+            continue;
         const Real apart = distance_along_line(motion.inputs, box, a, b) - motion.scale.zone;
         const bool is_apart = apart >= margin;
         pair.spare = is_apart ? apart : margin;
