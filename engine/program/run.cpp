@@ -401,6 +401,7 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     result.seconds_simulated = world.time();
     outputs->finish(world);
     if (checkpoints.written() > 0) result.written.push_back(checkpoints.summary());
+    if (!checkpoints.failure().empty()) result.outputs_failed.emplace_back("--checkpoint", checkpoints.failure());
     return result;
 }
 
