@@ -8,6 +8,7 @@ namespace skerry {
 struct ExternalWork {
     Vec3 impulse = Vec3::Zero();  // [N s]
     Real work = 0;                // [J]
+    Real flow = 0;                // sum of the magnitudes of all impulses [N s]
 };
 
 }  // namespace skerry

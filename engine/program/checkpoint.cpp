@@ -182,9 +182,11 @@ void CheckpointWriter::write(World* world, double time, const RunMemory& memory)
             save_world(WorldAccess::state_of(*world), {to_json(memory).dump()}, file_);
             ++written_;
             last_ = time;
+            failure_.clear();
         }
     } catch (const std::exception& error) {
         ++failed_;
+        failure_ = error.what();
         std::fprintf(stderr, "skerry: the checkpoint at %g s could not be written: %s; the run continues\n", time,
                      error.what());
     }

@@ -58,6 +58,8 @@ public:
     void write(World* world, double time, const RunMemory& memory);
     int written() const { return written_; }
     int failed() const { return failed_; }
+    /// Error of the last checkpoint; empty if it was written. A file that exists then holds an earlier state.
+    const std::string& failure() const { return failure_; }
     /// Returns a description of the checkpoint file for the user.
     std::string summary() const;
     /// Returns the line to print when the MPI launcher ends the job. It names the last checkpoint, if there is one.
@@ -69,6 +71,7 @@ private:
     double next_;      // time at which the next checkpoint is due [s]
     double last_ = 0;  // time of the last checkpoint that was written [s]
     int written_ = 0, failed_ = 0;
+    std::string failure_;
 };
 
 }  // namespace skerry

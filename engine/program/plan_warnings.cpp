@@ -139,7 +139,7 @@ void warn_of_material(const std::string& name, const MaterialSettings& material,
     const std::string density_part =
         "material \"" + name + "\" has a density of " + short_text(material.density, 4) + " kg/m^3, ";
     if (material.density < least_density)
-        warnings.push_back(density_part + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
+        warnings.push_back(density_part + "as light as air or lighter: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
     if (material.density > most_density)
         warnings.push_back(density_part + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
     if (material.young_modulus > most_modulus)
@@ -178,6 +178,19 @@ void warn_of_pivots(const BodyPlan& body, const Extent& extent, std::vector<std:
     }
 }
 
+/// Warns if several pins together hold all nodes of a body that deforms. The mesh is then too coarse for the region
+/// between the pins, for example with one layer of tetrahedra between two plates.
+void warn_of_held_nodes(const BodyPlan& body, const Mesh& mesh, std::vector<std::string>& warnings) {
+    if (body.settings.dynamics == BodyDynamics::rigid || body.pins.size() < 2) return;
+    std::vector<bool> held(mesh.nodes.size(), false);
+    for (const PinPlan& pin : body.pins)
+        if (pin.directions.empty())
+            for (const Index node : pin.nodes) held[static_cast<std::size_t>(node)] = true;
+    if (!std::ranges::all_of(held, [](bool each) { return each; })) return;
+    warnings.push_back("the pins of body \"" + body.settings.name +
+                       "\" hold all of its nodes, so that none can move between them: refine its mesh (mesh.refine)");
+}
+
 }  // namespace
 
 std::vector<std::string> plan_warnings(const ScenePlan& plan) {
@@ -207,6 +220,7 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
                                        "\" is rigid and does not yield: the plasticity of " + "material \"" +
                                        plan.materials[m].first + "\" is not used for it");
         warn_of_pivots(body, extents.back(), warnings);
+        warn_of_held_nodes(body, plan.meshes[body.mesh], warnings);
         before = &body;
     }
     warn_of_sizes(plan, extents, warnings);

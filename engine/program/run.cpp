@@ -399,6 +399,7 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     }
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
+    if (!checkpoints.failure().empty()) result.outputs_failed.emplace_back("--checkpoint", checkpoints.failure());
     outputs->finish(world);
     if (checkpoints.written() > 0) result.written.push_back(checkpoints.summary());
     return result;

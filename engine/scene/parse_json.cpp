@@ -42,10 +42,10 @@ public:
     bool end_array() override { return close(); }
 
     bool key(string_t& name) override {
+        open_.back().key = name;
         if (open_.back().value->contains(name))
             here().refuse("the key " + in_quotes(name) + " twice in the same object", "every key at most once",
                           "delete one of the two");
-        open_.back().key = name;
         return true;
     }
 

@@ -393,6 +393,19 @@ TEST_CASE("a mat carries the same weight before and after it falls asleep", "[sc
           Approx(weight + world.mass(mat) * standard_gravity).epsilon(0.01));
 }
 
+TEST_CASE("a ball that fell presses by its weight alone while it sleeps", "[scene]") {
+    // The impact leaves a part of its momentum to the step after it, which brings the ball to rest.
+    World world{Settings{}};
+    const auto wood = world.add_material({.young_modulus = 1e9});
+    const auto floor = world.add_collider(Plane{});
+    const auto ball = world.add_body(Sphere{0.02}, {.material = wood, .position = {0, 0, 0.3}});
+    world.measure_forces(true);
+    while (!world.asleep(ball) && world.time() < 3) REQUIRE(world.advance(1.0 / 60).ok());
+    REQUIRE(world.asleep(ball));
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.forces().on(ball, floor).force().z() == Approx(world.mass(ball) * standard_gravity).epsilon(1e-6));
+}
+
 TEST_CASE("measuring changes no step, costs nothing if it is off, and reading then fails with a message", "[scene]") {
     BusyWorld one(with(Integrator::leapfrog)), other(with(Integrator::leapfrog));
     one.world.measure_forces(true);

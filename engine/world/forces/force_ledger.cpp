@@ -273,6 +273,14 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
+/// True if a body was still at the beginning and at the end of the step. In the step that stops a body, contacts also
+/// take its momentum, so that their forces differ from those at rest. If a body falls asleep in that step, it is the
+/// only one whose forces are known.
+bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
+    const Real still = model.bodies.still_time[body];
+    return still > step_.whole_step || (still > 0 && rests(model, static_cast<Index>(body)));
+}
+
 /// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
 /// them, adds the impulse of the mean force from the time in which both were still. If a body was awake, adds the step
 /// to this time, or restarts the time and its sums if a body has moved.
@@ -290,7 +298,7 @@ void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t
         return;
     }
     row.still_contacts = row.peak.step_contacts;
-    if (std::min(model.bodies.still_time[first], model.bodies.still_time[second]) > 0) {
+    if (stayed_still(model, first) && stayed_still(model, second)) {
         row.still_seconds += seconds;
     } else {
         row.still = {};
@@ -332,7 +340,7 @@ void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t
         if (rested[body]) {
             const Real part = row.still_seconds > 0 ? seconds / row.still_seconds : 0;
             of_step = {part * row.still.impulse, part * row.still.moment};
-        } else if (model.bodies.still_time[body] > 0) {
+        } else if (stayed_still(model, body)) {
             row.still += of_step;
             row.still_seconds += seconds;
         } else {

@@ -106,6 +106,7 @@ private:
     void take_over_reactions(const Model& model, std::span<const Vec3> contact_force);
     void take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force);
     void add_pairs(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
+    bool stayed_still(const Model& model, std::size_t body) const;
     void end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row);
     void add_to_partners(const PairKey& key, const Vec3& impulse, Index contacts);
     void add_reactions(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);

@@ -135,33 +135,36 @@ bool holds_implicit_element(const Model& model) {
 void add_step(const StepScratch& step, Balance& balance) {
     if (!balance.open) return;
     const ContactMeasures& contacts = step.findings.measures;
-    const ExternalWork& external = step.findings.external;
-    const std::array<Vec3, 9> impulses{
-        step.parameters.kick_time * step.awake_mass * step.parameters.gravity,
-        external.impulse,
-        step.findings.held.impulse + step.findings.held_rows.impulse + step.findings.held_again.impulse,
-        step.findings.strained.impulse,
-        contacts.outer_impulse,
-        step.findings.joints.impulse,
-        step.findings.ties.impulse,
-        step.findings.cables.impulse,
-        -step.findings.rest.momentum};
+    const std::array<const ExternalWork*, 4> external{&step.findings.external, &step.findings.held,
+                                                      &step.findings.held_rows, &step.findings.held_again};
+    const std::array<Vec3, 7> impulses{step.parameters.kick_time * step.awake_mass * step.parameters.gravity,
+                                       step.findings.strained.impulse,
+                                       contacts.outer_impulse,
+                                       step.findings.joints.impulse,
+                                       step.findings.ties.impulse,
+                                       step.findings.cables.impulse,
+                                       -step.findings.rest.momentum};
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
-    const Real work = push_work + external.work + step.findings.held.work + step.findings.held_rows.work +
-                      step.findings.held_again.work + step.findings.joints.work + step.findings.ties.work +
-                      step.findings.cables.work + contacts.outer_work - contacts.dissipated - step.findings.damped -
-                      step.findings.strained.damped - step.findings.relaxed - step.findings.viscous -
-                      step.findings.plastic - step.findings.rest.energy - step.findings.springs.work -
-                      step.findings.fibre_work - step.findings.springs.dissipated;
-    ++balance.steps;
-    // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.
+    Real work = push_work;
+    // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support, or
+    // those of two attachments that squeeze a body.
     Vec3 impulse = Vec3::Zero();
+    for (const ExternalWork* part : external) {
+        impulse += part->impulse;
+        balance.momentum_flow += part->flow;
+        work += part->work;
+    }
     for (const Vec3& part : impulses) {
         impulse += part;
         balance.momentum_flow += part.norm();
     }
+    work += step.findings.joints.work + step.findings.ties.work + step.findings.cables.work + contacts.outer_work -
+            contacts.dissipated - step.findings.damped - step.findings.strained.damped - step.findings.relaxed -
+            step.findings.viscous - step.findings.plastic - step.findings.rest.energy - step.findings.springs.work -
+            step.findings.fibre_work - step.findings.springs.dissipated;
+    ++balance.steps;
     balance.impulse += impulse;
     balance.work += work;
     balance.energy_flow += std::abs(work);

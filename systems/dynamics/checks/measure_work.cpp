@@ -8,6 +8,7 @@ namespace {
 
 void add_load(const WorkInputs& nodes, std::size_t n, Real h, Real kick, Real lag, ExternalWork& sum) {
     sum.impulse += kick * nodes.load[n];
+    sum.flow += kick * nodes.load[n].norm();
     sum.work += h * nodes.load[n].dot(nodes.velocity_next[n]);
     if (!nodes.free.contain(n)) return;
     if (lag == 0) sum.work += h / 2 * nodes.load[n].dot(nodes.velocity[n] - nodes.velocity_next[n]);
@@ -20,6 +21,7 @@ void add_load(const WorkInputs& nodes, std::size_t n, Real h, Real kick, Real la
 void add_hold(const WorkInputs& nodes, std::size_t n, Real h, Real kick, ExternalWork& sum) {
     const Vec3 &force = nodes.force[n], &velocity = nodes.velocity_next[n];
     sum.impulse -= kick * force;
+    sum.flow += kick * force.norm();
     sum.work -= kick * force.dot(velocity);
     if (nodes.body_implicit[static_cast<std::size_t>(nodes.node_body[n])].size() > 0) return;
     sum.work -= (h - kick) * nodes.mass[n] * nodes.gravity.dot(velocity);
@@ -44,7 +46,7 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, R
             return part;
         },
         [](const ExternalWork& a, const ExternalWork& b) {
-            return ExternalWork{a.impulse + b.impulse, a.work + b.work};
+            return ExternalWork{a.impulse + b.impulse, a.work + b.work, a.flow + b.flow};
         });
 }
 

@@ -1,5 +1,6 @@
 #include "systems/dynamics/motion/hold_axes.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -82,6 +83,7 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         velocity_next[held.node] += impulse * inputs.inverse_mass[held.node] * held.direction;
         held_impulse[held.entry] += impulse * held.direction;
         sum.impulse += impulse * held.direction;
+        sum.flow += std::abs(impulse);
         // The work is the change of kinetic energy minus the work of the other forces. The energy changes by mass
         // gained (held.speed - gained / 2). The other forces have the impulse mass gained - impulse. Their work is
         // counted at the end velocity, or with leapfrog (lag = 0) at the mean velocity, and for gravity and loads over
@@ -144,6 +146,7 @@ ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> 
         const Vec3& impulse = contacts.impulse[first + i];
         held_impulse[entry] += impulse;
         sum.impulse += impulse;
+        sum.flow += impulse.norm();
         sum.work += impulse.dot(inputs.velocity[n] + velocity_next[n]) / 2;
     }
     contacts.resize(first);
@@ -163,6 +166,7 @@ ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec
         velocity_next[held.node] += (held.speed - before) * held.direction;
         held_impulse[held.entry] += impulse * held.direction;
         sum.impulse += impulse * held.direction;
+        sum.flow += std::abs(impulse);
         sum.work += impulse * (before + held.speed) / 2;
     });
     return all;

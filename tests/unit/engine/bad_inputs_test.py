@@ -157,7 +157,7 @@ FILES = [
     ("a comma too many", b'{"seconds": 1,}', ["bad.json", "line 1"]),
     ("a number that is none", b'{"seconds": NaN}', ["bad.json", "line 1"]),
     ("a number beyond all", b'{"seconds": 1e999}', ["bad.json"]),
-    ("a key twice", b'{"seconds": 1, "seconds": 2}', ["bad.json", "seconds"]),
+    ("a key twice", b'{"seconds": 1, "probes": [], "seconds": 2}', ["bad.json: seconds: ", "twice"]),
     ("a list", b"[1, 2]", ["bad.json", "the list [1,2]", "an object"]),
     ("no JSON", b"<scene/>", ["bad.json", "line 1"]),
     ("text that is no UTF-8", b'{"name": "\xff\xfe"}', ["bad.json", "UTF-8"]),

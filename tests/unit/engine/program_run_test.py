@@ -228,6 +228,16 @@ class ProgramRunTest(ProgramCase):
         self.assertIn("WARNING       the surface of body 'strip' crosses itself", summary)
         self.assertIn("; no surface crosses itself", self.skerry("run", self.scene).stdout)
 
+    def test_pins_that_leave_no_node_free_are_a_warning(self):
+        halves = [{"box": {"lower": [-1, -1, low], "upper": [1, 1, low + 1]}} for low in (-1.01, 0.01)]
+        body = {"name": "pad", "mesh": {"box": {"size": [0.1, 0.1, 0.04], "cells": [2, 2, 1]}}, "material": "soft",
+                "pin": halves}
+        scene = self.write("pad.json", {"seconds": 0.01, "materials": {"soft": {"E": 1e5}}, "bodies": [body]})
+        warning = 'the pins of body "pad" hold all of its nodes, so that none can move between them: refine its mesh'
+        self.assertIn(warning, self.skerry("run", scene).stderr)
+        self.assertNotIn("hold all", self.skerry("run", scene, "--set", "bodies[0].mesh.box.cells=[2,2,2]").stderr)
+        self.assertNotIn("hold all", self.skerry("run", scene, "--set", 'bodies[0].pin[1].axes=["z"]').stderr)
+
     def test_a_pin_that_rotates_about_the_far_origin_is_a_warning(self):
         top = {"lower": [-1, -1, 0.149], "upper": [1, 1, 1]}
         turn = {"keys": [{"time": 0}, {"time": 1, "rotation": {"axis": [0, 0, 1], "degrees": 20}}]}
