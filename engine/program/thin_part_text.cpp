@@ -77,7 +77,7 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
     std::erase_if(parts, [](const mesh::ThinPart& part) { return part.stiffness < reported_stiffness; });
     if (parts.empty()) return locking_text(elements);
     const mesh::ThinPart& part = parts.front();
-    const Real layers = std::round(part.layers);
+    const Real layers = std::max(Real{1}, std::round(part.layers));
     // The excess of stiffness is proportional to the square of the size of the cells.
     const Real finer = std::sqrt((part.stiffness - 1) / accepted_excess);
     return "a part " + with_unit(part.thickness, "m") + " thick and " + with_unit(part.length, "m") + " long around (" +
