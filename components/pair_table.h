@@ -70,8 +70,7 @@ struct LeafPairTable {
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
     Column<LeafPair> listed;
     Column<LeafPair> before;  // working memory: the list `listed` before it is made anew
-    // Pairs of leaves whose candidates the last search found anew. LeafPair::spare is the margin of this search;
-    // -infinity: the leaves are so far apart along a line that their features were not compared.
+    // pairs of leaves whose features the last search compared; LeafPair::spare is the margin of this search
     Column<LeafPair> searched;
 };
 

@@ -270,12 +270,12 @@ public:
             target_dynamics_ = fraction(random_) < 0.3 ? BodyDynamics::rigid : BodyDynamics::explicit_elastic;
         frame_ = rotation_matrix(std::acos(-1.0) * fraction(random_) * random_direction(random_));
         speed_ = 3 * std::pow(100.0 / 3, fraction(random_));
-        const Real own = std::pow(10.0, 4.7 + 4.3 * fraction(random_)),
-                   other = std::pow(10.0, 4.7 + 4.3 * fraction(random_));
-        build(own, other);
+        const Real shot_modulus = std::pow(10.0, 4.7 + 4.3 * fraction(random_)),
+                   target_modulus = std::pow(10.0, 4.7 + 4.3 * fraction(random_));
+        build(shot_modulus, target_modulus);
         std::ostringstream text;
-        text << "shot " << number << ": " << shot_.name << " (E " << own << " Pa, " << radius_ << " m) at " << speed_
-             << " m/s onto " << target_.name << " (E " << other << " Pa)";
+        text << "shot " << number << ": " << shot_.name << " (E " << shot_modulus << " Pa, " << radius_ << " m) at "
+             << speed_ << " m/s onto " << target_.name << " (E " << target_modulus << " Pa)";
         outcome_.description = text.str();
     }
 
@@ -303,18 +303,18 @@ private:
         return settings;
     }
 
-    void build(Real own_modulus, Real other_modulus) {
-        const auto shot_modulus = world_.add_material(
-            {.young_modulus = own_modulus, .poisson_ratio = 0.3, .friction = 0.6 * fraction(random_)});
-        const auto target_modulus =
-            world_.add_material({.young_modulus = other_modulus, .poisson_ratio = 0.3, .friction = 0.3});
+    void build(Real shot_modulus, Real target_modulus) {
+        const auto shot_material = world_.add_material(
+            {.young_modulus = shot_modulus, .poisson_ratio = 0.3, .friction = 0.6 * fraction(random_)});
+        const auto target_material =
+            world_.add_material({.young_modulus = target_modulus, .poisson_ratio = 0.3, .friction = 0.3});
         if (target_.mesh.nodes.empty()) {
             ColliderSettings placed;
             placed.rotation = rotation_vector(frame_ * target_.turned);
             collider_ = world_.add_collider(target_.shape ? *target_.shape : Shape(target_.surface), placed);
             faces_ = target_.surface.triangles;
         } else {
-            target_body_ = world_.add_body(target_.mesh, {.material = target_modulus,
+            target_body_ = world_.add_body(target_.mesh, {.material = target_material,
                                                           .rotation = rotation_vector(frame_),
                                                           .dynamics = target_dynamics_,
                                                           .name = "target"});
@@ -329,7 +329,7 @@ private:
         start_ = (target_.reach + 1.1 * radius_ + length_ / 2) / std::cos(tilt);
         flight_ = -speed_ * (frame_ * toward_shot);
         const Vec3 spin = 0.7 * speed_ / radius_ * fraction(random_) * random_direction(random_);
-        BodySettings shot{.material = own,
+        BodySettings shot{.material = shot_material,
                           .position = frame_ * (aim + start_ * toward_shot),
                           .rotation = 3 * fraction(random_) * random_direction(random_),
                           .velocity = flying_ == Flying::shot ? flight_ : Vec3::Zero(),

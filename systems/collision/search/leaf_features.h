@@ -18,9 +18,7 @@ using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 /// Writes to lane l of `box` the bounding box of the points in lane l of points[0] to points[Count - 1].
 template <std::size_t Count>
 void find_bounds(const std::array<PointLanes, Count>& points, LeafBoxes& box) {
-#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i)
-#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             KernelReal lower = load_part<KernelReal>(points[0][i], part), upper = lower;
             for (std::size_t k = 1; k < Count; ++k) {
@@ -101,21 +99,20 @@ struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
     std::array<LeafBoxes, 3> box;  // groups of eight edges; lanes after the last edge repeat the last edge
-    // mesh nodes of the first and the second end of each edge, by group and lane
-    std::array<std::array<std::array<Index, leaf_lanes>, 2>, 3> end;
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
         list = &inputs.leaf_features[static_cast<std::size_t>(leaf)];
         for (std::size_t group = 0; group < groups(); ++group) {
+            std::array<std::array<Index, leaf_lanes>, 2> node;
             for (std::size_t l = 0; l < leaf_lanes; ++l) {
                 const auto& edge =
                     list->edge[std::min(leaf_lanes * group + l, static_cast<std::size_t>(list->edge_count) - 1)];
-                for (std::size_t k = 0; k < 2; ++k) end[group][k][l] = edge.node[k];
+                for (std::size_t k = 0; k < 2; ++k) node[k][l] = edge.node[k];
             }
-            std::array<PointLanes, 2> at;
-            for (std::size_t k = 0; k < 2; ++k) at[k] = lanes_of_points(inputs.position, end[group][k]);
-            find_bounds(at, box[group]);
+            std::array<PointLanes, 2> end;
+            for (std::size_t k = 0; k < 2; ++k) end[k] = lanes_of_points(inputs.position, node[k]);
+            find_bounds(end, box[group]);
         }
     }
     std::size_t count() const { return static_cast<std::size_t>(list->edge_count); }

@@ -39,6 +39,11 @@ constexpr std::size_t max_near_leaves = 32;
 
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
 
+template <std::size_t Size>
+bool has_node(const std::array<Index, Size>& a, Index node) {
+    return std::find(a.begin(), a.end(), node) != a.end();
+}
+
 /// Finds close features of two bodies, or of one body that is paired with itself (`Self`).
 template <bool Self>
 class BodySearch {
@@ -46,6 +51,7 @@ public:
     BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                Column<FoundCandidate>& found)
         : inputs_(inputs),
+          triangle_(inputs.surface.triangles),
           pair_(pair),
           box_(box),
           found_(found),
@@ -57,7 +63,7 @@ public:
     void run() {
         const Index root = inputs_.body.bvh_nodes[pair_.first].begin;
         for (const LeafPair& leaves : pair_.leaf_pairs)
-            if (leaves.spare > -infinity) add_near_leaves({root + leaves.first, root + leaves.second, leaves.spare});
+            add_near_leaves({root + leaves.first, root + leaves.second, leaves.spare});
         if (!Self) find_near_leaves();
         compare_near_leaves();
         flush_queue(FeaturePair::point_triangle);
@@ -195,16 +201,16 @@ private:
         const LeafBoxes& boxes =
             points_on_second ? features_of(other, first_.boxes).box : features_of(other, second_.boxes).box;
         const Vec3& at = position(n);
-        const auto& corner = inputs_.leaf_nodes[node(other).leaf].corner;
-        unsigned near =
+        const unsigned near =
             used_lanes(node(other).count, 0) & lanes_below(distance_squared(boxes, {at, at}), radius_squared_);
-        if (Self && near != 0) near &= ~lanes_with(corner, std::array{n});
         for_each_lane(near, [&](std::size_t lane) {
             const Index triangle = leaf_triangle(other)[lane];
+            const auto& corner = triangle_.node[triangle];
+            if (Self && has_node(corner, n)) return;
             enqueue({point_triangle_feature(points_on_second && !Self, vertex - vertices(points_on_second).begin,
                                             triangle - triangles(points_on_second).begin),
                      vertex, triangle},
-                    {n, corner[0][lane], corner[1][lane], corner[2][lane]});
+                    {n, corner[0], corner[1], corner[2]});
         });
     }
 
@@ -214,12 +220,13 @@ private:
         const auto& own = a.node(i);
         for (std::size_t group = 0; group < b.groups(); ++group) {
             if (selected[group] == 0) continue;
-            unsigned lanes = selected[group] & lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
-            const auto& end = b.end[group];
-            if (Self && lanes != 0) lanes &= ~lanes_with(end, own);
+            const unsigned lanes =
+                selected[group] & lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
             for_each_lane(lanes, [&](std::size_t lane) {
-                enqueue(edges_candidate(a.row(i), b.row(leaf_lanes * group + lane)),
-                        {own[0], own[1], end[0][lane], end[1][lane]});
+                const std::size_t j = leaf_lanes * group + lane;
+                const auto& other = b.node(j);
+                if (Self && (has_node(other, own[0]) || has_node(other, own[1]))) return;
+                enqueue(edges_candidate(a.row(i), b.row(j)), {own[0], own[1], other[0], other[1]});
             });
         }
     }
@@ -289,6 +296,7 @@ private:
     };
 
     const CollisionInputs& inputs_;
+    const TriangleTable& triangle_;
     const PairToSearch& pair_;
     std::span<const Aabb> box_;
     Column<FoundCandidate>& found_;

@@ -15,8 +15,7 @@ struct PairToSearch {
     Real travel_base;   // travel of the pair from which bounds are counted (pair_travel_base) [m]
     Real margin;        // features with a distance below scale.zone + margin are listed [m]
     Real min_distance;  // lower bound of the distance between the two bodies [m]
-    // For a body paired with itself: the pairs of leaves to compare. LeafPair::spare is used in place of `margin`;
-    // -infinity marks leaves that are known to be too far apart.
+    // For a body paired with itself: the pairs of leaves to compare. LeafPair::spare is used in place of `margin`.
     std::span<const LeafPair> leaf_pairs{};
 };
 

@@ -44,18 +44,14 @@ RigidDisplacement rigid_displacement(const CollisionInputs& inputs, Index body, 
     const Real count = inputs.body.vertices[body].size();
     rigid.before /= count;
     rigid.now /= count;
-    // Sums over the nodes of the squares of the coordinates of r, of the products yz, zx, xy, and of cross(r, u).
-    Vec3 squares = Vec3::Zero(), products = Vec3::Zero(), moment = Vec3::Zero();
+    Mat3 inertia = Mat3::Zero();
+    Vec3 moment = Vec3::Zero();
     for_each_node(inputs, body, [&](Index n) {
         const Vec3 r = self.origin[n] - rigid.before;
-        squares += r.cwiseProduct(r);
-        products += Vec3(r[1] * r[2], r[2] * r[0], r[0] * r[1]);
+        inertia.diagonal().array() += r.squaredNorm();
+        inertia -= r * r.transpose();
         moment += r.cross(position(n) - rigid.now);
     });
-    Mat3 inertia = (squares.sum() - squares.array()).matrix().asDiagonal();
-    inertia(1, 2) = inertia(2, 1) = -products[0];
-    inertia(2, 0) = inertia(0, 2) = -products[1];
-    inertia(0, 1) = inertia(1, 0) = -products[2];
     const Vec3 turn = inertia.inverse() * moment;
     if (turn.allFinite()) rigid.rotation = rotation_matrix(turn);
     return rigid;
@@ -119,21 +115,6 @@ void list_close_pairs(const SelfMotion& motion, std::span<const Aabb> box, const
             ++b;
         }
     }
-}
-
-/// Lower bound of the distance between the features of two leaves [m]: their distance along the line through the
-/// centres of their boxes. The boxes of a surface that is oblique to the axes overlap although its leaves are apart.
-/// The bound is negative or NaN if the leaves overlap along the line.
-Real distance_along_line(const CollisionInputs& inputs, std::span<const Aabb> box, Index a, Index b) {
-    const Vec3 line = box[a].lower + box[a].upper - box[b].lower - box[b].upper;
-    const auto least = [&](Index leaf, const Vec3& direction) {
-        const LeafNodes& nodes = inputs.leaf_nodes[inputs.bvh_node[leaf].leaf];
-        Real along = infinity;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(nodes.count); ++i)
-            along = std::min(along, direction.dot(inputs.position[nodes.node[i]]));
-        return along;
-    };
-    return (least(a, line) + least(b, -line)) / line.norm();
 }
 
 /// Finds the leaf that owns each feature of a body.
@@ -243,21 +224,16 @@ void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool 
     const bool relist = leaves.listed.empty() || !(leaves.listed[0].spare > motion.reach_of(self, root, root));
     if (relist) list_close_pairs(motion, box, self, leaves);
     leaves.searched.clear();
-    Index first = no_index;
-    Real greatest_reach = 0;  // bound of the reach of all pairs with this first leaf [m]
+    const Real greatest_reach = motion.reach_of(self, root, root);
     for (std::size_t i = 1; i < leaves.listed.size(); ++i) {
         LeafPair& pair = leaves.listed[i];
         const Index a = root + pair.first, b = root + pair.second;
-        if (first != pair.first) greatest_reach = motion.reach_of(self, a, root);
-        first = pair.first;
         if (!compare_all && pair.spare > std::max(greatest_reach, renewal_fraction * motion.skin)) continue;
         const Real margin = motion.margin_of(self, a, b);
         if (pair.spare > (compare_all ? margin : std::max(motion.reach_of(self, a, b), renewal_fraction * motion.skin)))
             continue;
-        const Real apart = distance_along_line(motion.inputs, box, a, b) - motion.scale.zone;
-        const bool is_apart = apart >= margin;
-        pair.spare = is_apart ? apart : margin;
-        leaves.searched.push_back({pair.first, pair.second, is_apart ? -infinity : margin});
+        pair.spare = margin;
+        leaves.searched.push_back(pair);
         self.is_searched[a] = self.is_searched[b] = 1;
     }
     const Real listed = motion.scale.zone + leaves.listed[0].spare;
@@ -293,14 +269,9 @@ bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, std::spa
     const CollisionInputs& inputs = motion.inputs;
     fit_motion(inputs, motion.body, self, [&](Index n) { return Vec3(inputs.position[n] + step.displacement(n)); });
     if (greatest_motion(motion, self) < smallest_spare(pairs)) return true;
-    const Index root = motion.root();
-    Index first = no_index;
-    Real greatest = 0;  // bound of the motion of all pairs with this first leaf [m]
     return std::ranges::all_of(pairs, [&](const LeafPair& pair) {
-        const Aabb& moved = self.moved_box[root + pair.first];
-        if (first != pair.first) greatest = farthest(moved, self.moved_box[root]);
-        first = pair.first;
-        return greatest < pair.spare || farthest(moved, self.moved_box[root + pair.second]) < pair.spare;
+        return farthest(self.moved_box[motion.root() + pair.first], self.moved_box[motion.root() + pair.second]) <
+               pair.spare;
     });
 }
 

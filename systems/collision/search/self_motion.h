@@ -20,8 +20,7 @@
 // 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of pairs with M <= R
 //    are compared again, and those with D(t) < zone + max(m, k S, R) are listed; this maximum is the new M. m is
 //    SelfMotion::skin, S(a, b) bounds the relative motion in one step, and k is steps_ahead. The term k S gives fast
-//    pairs a larger M, so that they are not compared in every step. Leaves that are farther apart than zone + M along
-//    some line need no comparison.
+//    pairs a larger M, so that they are not compared in every step.
 // 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself represents all other
 //    pairs. If it expires, the close pairs are listed again.
 //

@@ -52,19 +52,15 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
 [[gnu::always_inline]] inline Parts<KernelReal> distance_squared(const std::array<Lanes<Real, leaf_lanes>, 3>& lower,
                                                                  const std::array<Lanes<Real, leaf_lanes>, 3>& upper,
                                                                  const Aabb& to) {
-    Parts<KernelReal> sum;
-    // -O2 does not unroll loops, and would keep the sum in memory.
-#pragma GCC unroll 2
-    for (std::size_t part = 0; part < kernel_parts; ++part) {
-        const auto gap = [&](std::size_t i) {
-            const KernelReal none{}, above = load_part<KernelReal>(lower[i], part) - to.upper[static_cast<Index>(i)],
-                                     below = to.lower[static_cast<Index>(i)] - load_part<KernelReal>(upper[i], part);
-            const KernelReal nearer = above > below ? above : below;
-            return nearer > none ? nearer : none;
-        };
-        const KernelReal x = gap(0), y = gap(1), z = gap(2);
-        sum[part] = x * x + y * y + z * z;
-    }
+    const KernelReal none{};
+    Parts<KernelReal> sum{};
+    for (std::size_t part = 0; part < kernel_parts; ++part)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const KernelReal above = load_part<KernelReal>(lower[i], part) - to.upper[static_cast<Index>(i)],
+                             below = to.lower[static_cast<Index>(i)] - load_part<KernelReal>(upper[i], part);
+            const KernelReal nearer = above > below ? above : below, gap = nearer > none ? nearer : none;
+            sum[part] += gap * gap;
+        }
     return sum;
 }
 /// Squared distances of eight boxes from one box, by lane; 0 for boxes that overlap the box [m^2].
@@ -75,21 +71,6 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
 /// Bit mask of the lanes whose value is below `limit`.
 [[gnu::always_inline]] inline unsigned lanes_below(const Parts<KernelReal>& value, Real limit) {
     return bits_of_parts([&](std::size_t part) { return value[part] < limit; });
-}
-
-/// Bit mask of the lanes in which a row of `index` contains one of the given values.
-template <std::size_t Rows, std::size_t Values>
-[[gnu::always_inline]] inline unsigned lanes_with(const std::array<std::array<Index, leaf_lanes>, Rows>& index,
-                                                  const std::array<Index, Values>& value) {
-    typedef Index Indices __attribute__((vector_size(leaf_lanes * sizeof(Index))));
-    typedef Indices InMemory __attribute__((aligned(alignof(Index)), may_alias));
-    Indices with{};
-#pragma GCC unroll 3
-    for (std::size_t row = 0; row < Rows; ++row)
-#pragma GCC unroll 2
-        for (std::size_t i = 0; i < Values; ++i)
-            with |= *reinterpret_cast<const InMemory*>(index[row].data()) == value[i];
-    return bits_of(__builtin_convertvector(with, LaneBits));
 }
 
 }  // namespace skerry

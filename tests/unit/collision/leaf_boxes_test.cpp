@@ -1,6 +1,5 @@
 #include "systems/collision/tree/leaf_boxes.h"
 
-#include <array>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
@@ -53,13 +52,6 @@ TEST_CASE("empty lanes are near nothing, and lanes with NaN are near all feature
     const Aabb nowhere{Vec3::Constant(nan), Vec3::Constant(nan)};
     CHECK(lane_of_parts(distance_squared(leaf, nowhere), 3) == distance_squared(unit, nowhere));
     CHECK((lanes_below(distance_squared(leaf, nowhere), 1) & 8U) != 0);  // NaN counts as near
-}
-
-TEST_CASE("the lanes with a value are those that contain it in any row", "[unit]") {
-    const std::array<std::array<Index, leaf_lanes>, 2> rows{{{0, 1, 2, 3, 4, 5, 6, 7}, {7, 7, 0, 0, 8, 9, -1, 1}}};
-    CHECK(lanes_with(rows, std::array<Index, 1>{7}) == 0b10000011U);
-    CHECK(lanes_with(rows, std::array<Index, 2>{0, -1}) == 0b01001101U);
-    CHECK(lanes_with(rows, std::array<Index, 2>{10, 11}) == 0);
 }
 
 TEST_CASE("lanes are visited in rising order", "[unit]") {

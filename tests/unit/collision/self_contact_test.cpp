@@ -116,7 +116,7 @@ TEST_CASE("the candidates of a strip with itself include all features within rea
     RollingStrip strip;
     strip.steer(5.9, 0, 0);
     strip.w.drift(h);
-    std::size_t most = 0, extended = 0, searched = 0, apart = 0, listed_leaves = 0;
+    std::size_t most = 0, extended = 0, compared = 0, listed_leaves = 0;
     constexpr int steps = 240;
     Real turn = 0;
     for (int step = 1; step <= steps; ++step) {
@@ -133,18 +133,14 @@ TEST_CASE("the candidates of a strip with itself include all features within rea
         REQUIRE(std::ranges::includes(listed, expected));
         most = std::max(most, expected.size());
         const LeafPairTable& leaves = strip.w.pairs.leaf_pairs[0];
-        if (strip.w.pairs.rebuilt[0] != 0) {
-            searched += leaves.searched.size();
-            for (const LeafPair& pair : leaves.searched) apart += pair.spare == -infinity;
-        }
+        compared += strip.w.pairs.rebuilt[0] != 0 ? leaves.searched.size() : 0;
         listed_leaves += leaves.listed.size();
         extended += strip.w.pairs.rebuilt[0] == 0 && strip.w.pairs.valid_until[0] > before;
         strip.w.drift(h);
     }
     CHECK(most > 20);
     CHECK(extended > steps / 20);
-    CHECK(searched < listed_leaves / 3);
-    CHECK(apart > searched / 10);
+    CHECK(compared < listed_leaves / 3);
 }
 
 TEST_CASE("a strip that rolls up and turns finds all contacts with itself while few steps search", "[unit][long]") {
