@@ -42,12 +42,12 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
             nodes.applied_force[n] = nodes.applied_before[n] = Vec3::Zero();
         nodes.body[n] = row;
     }
-    const auto looked_at = static_cast<std::size_t>(step_nodes_of(appended(begin, end), body.core_nodes).end);
-    for (std::size_t first = begin; first < looked_at; first += nodes_per_block) {
+    const auto nodes_end = static_cast<std::size_t>(step_nodes_of(appended(begin, end), body.core_nodes).end);
+    for (std::size_t first = begin; first < nodes_end; first += nodes_per_block) {
         const std::size_t block = model.node_blocks.begin.size();
         AnyTable(model.node_blocks).resize(block + 1);
         model.node_blocks.begin[block] = static_cast<Index>(first);
-        model.node_blocks.end[block] = static_cast<Index>(std::min<std::size_t>(first + nodes_per_block, looked_at));
+        model.node_blocks.end[block] = static_cast<Index>(std::min<std::size_t>(first + nodes_per_block, nodes_end));
         model.node_blocks.body[block] = row;
     }
     return appended(begin, end);

@@ -73,8 +73,8 @@ Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t
 }
 
 /// Factor on the stiffness of a filling in the bound of the stable step. The pressure of a liquid has a kink where the
-/// liquid boils. At the stability limit of the linear law, and still at half of it, oscillations across the kink gain
-/// energy. At a third they do not.
+/// liquid boils. Oscillations across the kink gain energy at the stable step of the linear law, and still at half of
+/// it, but not at a third. The bound adds squared frequencies, so the factor is 3^2.
 Real margin_of(CavityLaw law) {
     return law == CavityLaw::liquid ? 9 : 1;
 }
