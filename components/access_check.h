@@ -54,8 +54,8 @@ private:
     const AccessWatch* before_;
 };
 
-/// Member of Column. It reports each copy and each move of the enclosing column as an access to the AccessWatch of the
-/// thread. A forbidden move terminates the program with a message, because a move must not throw.
+/// Member of Column. It reports each copy and each move of the enclosing column to the AccessWatch of the thread, as an
+/// access to the column. A forbidden move terminates the program with a message, because a move must not throw.
 class CopyCheck {
 public:
     CopyCheck() = default;

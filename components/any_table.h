@@ -1,5 +1,5 @@
-// Type-erased tables and columns for code that runs rarely. The compiler then translates such code once instead of once
-// for every column of every table.
+// Type-erased tables and columns, for code that runs rarely. The compiler translates such code only once, not once for
+// every column of every table.
 #pragma once
 
 #include <cstddef>

@@ -5,8 +5,9 @@
 
 namespace skerry {
 
-/// Appends a point to the columns with one row per point. The other columns get values without effect (most_ratio 1: no
-/// friction, else 0), which the caller may overwrite. `velocity`: see CableBlockTable::velocity [m/s]
+/// Appends a point to the columns with one row per point. The columns other than `stencil` and `velocity` get values
+/// without effect (1 for most_ratio, which means no friction; else 0). The caller may overwrite them. `velocity`: see
+/// CableBlockTable::velocity [m/s]
 inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBlockTable& blocks) {
     blocks.stencil.push_back(stencil);
     blocks.velocity.push_back(velocity);

@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Rows of a body minus the corresponding rows of an earlier body with the same mesh.
+/// Differences of row indices: row of a body minus the corresponding row of an earlier body with the same mesh.
 struct RowOffsets {
     Index nodes, elements;  // `nodes`: rows of NodeTable; `elements`: numbers of tetrahedra in TetrahedronBlockTable
     Index triangles = 0, edges = 0, vertices = 0;

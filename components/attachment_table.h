@@ -24,8 +24,8 @@ struct AttachmentTable {
     Column<RigidMotion> motion;
     Column<RigidMotion> initial;  // pose and motion of the attachment at the start of the script
     Column<MotionScript> script;
-    // Columns of the matrix: orthonormal directions along which the nodes are held. A zero column stands for no
-    // direction. The identity matrix marks nodes that are held completely; only such nodes have the inverse mass 0.
+    // Columns of the matrix: orthonormal directions along which the nodes are held; the other columns are zero. The
+    // identity matrix marks nodes that are held completely; only such nodes have the inverse mass 0.
     Column<Mat3> held;
     Column<Index> node;         // held nodes of all attachments: rows of NodeTable
     Column<Vec3> anchor;        // position of `node` in the frame of the attachment [m]

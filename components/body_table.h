@@ -21,7 +21,8 @@ enum class BodyKind : std::uint8_t {
 template <>
 inline constexpr std::uint64_t value_count<BodyKind> = 2;
 
-/// A ghost is a copy of a body that another rank owns (engine/world/ranks).
+/// A ghost is a copy of a body that another rank owns. Ranks are processes that simulate one world together
+/// (engine/world/ranks).
 enum class GhostKind : std::uint8_t {
     none,  // this rank owns the body
     twin,  // this rank computes the ghost completely, like the owner
@@ -29,7 +30,8 @@ enum class GhostKind : std::uint8_t {
 };
 
 /// A frame that translates with a body but does not rotate. Distances inside a body change only if nodes move relative
-/// to the frame. The distance between two bodies also changes by the relative motion of their two frames.
+/// to the frame. The distance between two bodies also changes by the relative motion of their two frames. The collision
+/// search bounds these motions separately (docs/methods/collision.md 2).
 struct MovingFrame {
     Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when BodyTable::displacement was last zero [m/s]
     Vec3 offset = Vec3::Zero();    // displacement of the frame since BodyTable::displacement was last zero [m]
@@ -63,7 +65,8 @@ struct BodyTable {
     Column<Range> bvh_leaves;
     Column<Index> tetrahedron_count;
     Column<Index> pinned_count;  // number of nodes without degrees of freedom
-    // thickness of the contact shell of the body; two bodies in contact use the mean of their thicknesses [m]
+    // thickness of the layer around the surface in which contacts act; two bodies in contact use the mean of their
+    // thicknesses [m]
     Column<Real> contact_distance;
     // Number of core nodes of a round rigid body. The core nodes are the first nodes of the body. A body with 0 core
     // nodes is not round and has triangles. A sphere has 1 core node, its centre. A capsule has 2 core nodes, the ends
@@ -76,7 +79,8 @@ struct BodyTable {
     Column<Real> min_altitude;  // smallest altitude of the elements in the rest shape [m]
     Column<Real> rest_step;     // longest stable step of the body in its rest shape [s]
     Column<Real> stable_step;   // longest stable step of the body in its shape at the last check [s]
-    // Longest step at which the implicit elements (elements of clusters) of the body are stable; 0: it has none [s].
+    // Step length for which the clusters of the body were made (NodeClusters). The implicit elements of the clusters
+    // are stable up to this step, unless they become stiffer than assumed. 0: the body has no clusters [s].
     Column<Real> cluster_step;
     // 1: the body is asleep. Steps do not compute a sleeping body until it is woken, for example by a contact or a
     // changed load.
@@ -85,30 +89,32 @@ struct BodyTable {
     // 1: the body is asleep or a led ghost, so this step computes no forces on it. Derived by Model::note_rest.
     Column<std::uint8_t> idle;
     // Number of steps for which the body still counts as undeformed and unrotated, so that its elements exert no force
-    // and are not computed. Then find_unstrained.h tests again whether it is strained. 0: the elements are computed.
+    // and are not computed. After these steps the body is tested again (find_unstrained.h). 0: the elements are
+    // computed.
     Column<std::uint16_t> unstrained;
     // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
-    // Measurements of stillness (stillness.h), used if SleepSettings::own_limits is set. The sleep time is divided into
-    // two halves. |drift| is the largest distance, measured in the current half, of a node from its position at the
-    // start of the half (NodeTable::still_position) [m]. `drift` is negative if the distance has decreased between two
-    // measurements, so that the body does not move steadily. `drift_before` is |drift| at the end of the previous half
-    // [m].
+    // Measurements of stillness (stillness.h), used if SleepSettings::own_limits is set. The sleep time, for which a
+    // body must be still before it falls asleep, is divided into two halves. |drift| is the largest distance, measured
+    // in the current half, of a node from its position at the start of the half (NodeTable::still_position) [m].
+    // `drift` is negative if the distance has decreased between two measurements; the body then does not move steadily.
+    // `drift_before` is |drift| at the end of the previous half [m].
     Column<Real> drift, drift_before;
     // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
     // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: shape_drift at the end
-    // of the previous half if the last measurement of that half gave the largest distance, as for a shape that creeps
-    // in one direction; else 0 [m].
+    // of the previous half if the last measurement of that half gave the largest distance; else 0 [m]. It is above 0
+    // for a shape that creeps in one direction.
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
     // The next columns are measured in the moving frame of the body.
     Column<Real> frame_speed;  // greatest speed of a node relative to the frame in this step [m/s]
-    // Greatest |position - displacement_origin - frame.offset| of the nodes [m].
+    // Greatest displacement of a node relative to the frame since `displacement` was last zero: the maximum of
+    // |position - displacement_origin - frame.offset| [m].
     Column<Real> displacement;
-    // Sum of the changes of `displacement`, except its resets to zero [m]. From any earlier time t until now, no node
-    // has moved relative to the frame by more than travel - travel(t) + 2 displacement(t) (docs/methods/collision.md
-    // 2.1).
+    // Sum of the changes of `displacement`, except its resets to zero [m]. Upper bound of the motion of a node relative
+    // to the frame from an earlier time t until now: travel - travel(t) + 2 displacement(t), where (t) marks the values
+    // at the time t (docs/methods/collision.md 2.1).
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;

@@ -1,5 +1,5 @@
-// A hashed grid of boxes of any size. Finding all overlapping pairs takes a time proportional to the number of boxes if
-// few boxes overlap.
+// A hashed grid of boxes of any size, which finds pairs of overlapping boxes. If few boxes overlap, finding all pairs
+// takes a time proportional to the number of boxes.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 namespace skerry {
 
 /// Hashed grids, one for each cell width that occurs; all cell widths are powers of two. A box is stored in the grid
-/// whose cells are wider than the longest edge of the box by at most a factor of two, in the cell that contains its
-/// lower corner. The stored box can extend beyond this cell by less than one cell width. A box that overlaps it
-/// therefore reaches into the cell, or comes closer to the cell than one cell width. Cells are found by hashing their
+/// with the smallest cells that are wider than the longest edge of the box. There it is stored in the cell that
+/// contains its lower corner. The stored box can extend beyond this cell by less than one cell width. Any box that
+/// overlaps the stored box therefore comes closer to the cell than one cell width. Cells are found by hashing their
 /// integer coordinates (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003; grids of several sizes: Mirtich 1996).
 /// The next call of `build` reuses the memory.
 class BoxGrid {
@@ -25,9 +25,9 @@ public:
     /// while the grid is queried.
     void build(std::span<const Aabb> box, std::span<const Index> rows);
 
-    /// Calls visit(other) for inserted rows whose boxes may overlap the box of `row`, each once. Only rows in coarser
-    /// grids than `row`, and rows with greater indices in the grid of `row`, are visited. Calling for_each_near for all
-    /// inserted rows therefore visits every pair of boxes that share a point exactly once.
+    /// Calls visit(other) for inserted rows whose boxes may overlap the box of `row`, each once. Visits only rows in
+    /// coarser grids than that of `row`, and rows with greater indices in the grid of `row`. If for_each_near is called
+    /// for all inserted rows, every pair of boxes that share a point is therefore visited exactly once.
     template <class Visit>
     void for_each_near(Index row, Visit&& visit) const {
         const Aabb& box = box_[static_cast<std::size_t>(row)];

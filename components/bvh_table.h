@@ -59,7 +59,7 @@ struct LeafFeatures {
 
 /// Boxes and topology of the tree nodes. Model::rebuild_outlines derives BvhTable and BvhLeafTable.
 struct BvhTable {
-    Column<Aabb> box;      // box of the tree node [m]; refitted before each use of the tree, else out of date
+    Column<Aabb> box;      // box of the tree node [m]; out of date until it is computed again before a use of the tree
     Column<BvhNode> node;  // topology of the tree, which is built once from the rest shape
 
     void for_each_column(auto&& visit) {

@@ -12,8 +12,8 @@ using CableHandle = Handle<struct CableTag>;  // refers to a cable of a world
 /// Quantity of a cable that the user prescribes over time.
 enum class CableControl : std::uint8_t {
     tension,  // tension of the first segment [N]
-    length,   // greatest length; a shorter cable is slack [m]
-    rate,     // rate of the greatest length; negative draws the cable in [m/s]
+    length,   // upper limit of the length; a shorter cable is slack [m]
+    rate,     // rate of the upper limit of the length; a negative rate draws the cable in [m/s]
 };
 
 }  // namespace skerry

@@ -25,10 +25,11 @@ struct CableTable {
     Column<std::uint32_t> slot;
     Column<CableControl> control;
     Column<Real> friction;  // friction coefficient at the points between the first and the last
-    // greatest length at the end of the last step [m]; with the control `rate`, each step adds rate times step length
+    // upper limit of the length of the cable at the end of the last step [m]; with the control `rate`, each step adds
+    // rate times step length to it
     Column<Real> released;
     Column<Real> step;        // time for which the tensions acted in the last step; 0 before the first step [s]
-    Column<Real> work;        // work of the control on the cable up to the start of the last step [J]
+    Column<Real> work;        // work of the prescribed tension or length up to the start of the last step [J]
     Column<Real> dissipated;  // energy that friction at the points dissipated up to the start of the last step [J]
     Column<Range> points;     // rows of the columns that have one row per point
     Column<Range> keys;       // rows of `key`
@@ -80,17 +81,19 @@ struct CableTable {
     }
 };
 
-/// Equations of a cable, or of a tie of the kind `ball` (TieKind), in a step. Unlike a contact, they involve any number
-/// of points. For a tie, all points get the same impulse, and the sum of their velocities is zero.
+/// Equations of a cable, or of a tie of the kind `ball` (TieKind), in a step. Unlike a contact, a block has any number
+/// of points. In the block of a tie, all points get the same impulse, and the velocities of the points (weighted by
+/// their stencils) sum to zero.
 struct CableBlock {
     Index cable;   // row of CableTable; for a tie, row of TieTable
     Range points;  // rows of those columns of CableBlockTable that have one row per point
     // True: the impulses are unknowns of a contact region. False: the tensions are known before the solve.
     bool solved;
-    bool by_length;  // true: the greatest length is prescribed; false: the tension of the first segment
-    // If by_length: greatest rate of the length [m/s]. Otherwise: impulse of the tension of the first segment [N s].
+    bool by_length;  // true: an upper limit of the length is prescribed; false: the tension of the first segment
+    // If by_length: upper limit of the rate of the length [m/s]. Otherwise: impulse of the tension of the first segment
+    // [N s].
     Real prescribed;
-    Real released;  // greatest length at the end of the step [m]
+    Real released;  // upper limit of the length at the end of the step [m]
     // index of the first entry of the block's mobility matrix in the array of all these matrices in the region solver
     Index mobility;
     bool is_tie = false;
@@ -112,19 +115,20 @@ struct CableBlockTable {
     Column<CableBlock> block;
     // The following columns have one row per point, except those marked `by block`.
     Column<Stencil> stencil;  // nodes and weights; all weights are 0 for points of colliders and of the world
-    // velocity that is added to the velocity of the nodes: the velocity of a point of a collider, or minus the velocity
-    // that a tie demands (at its last point); else 0 [m/s]
+    // velocity that is added to the weighted velocity of the nodes. Point on a collider: the velocity of this point.
+    // Last point of a tie: minus the velocity that the tie prescribes. Other points: 0 [m/s]
     Column<Vec3> velocity;
     Column<Vec3> direction;  // unit vector to the next point; 0 at the last point
     Column<Real> length;     // distance to the next point; 0 at the last point [m]
-    // greatest ratio of the tensions on both sides of the point: exp(friction coefficient times bend [rad])
+    // greatest ratio of the tensions on both sides of the point, from the capstan equation: exp(friction coefficient
+    // times angle of the bend [rad])
     Column<Real> most_ratio;
     Column<Real> impulse;      // impulses of the block (CableBlock::impulses); before the solve: the warm start [N s]
     Column<Real> work;         // by block: work of a solved cable on the bodies [J]
     Column<Real> dissipated;   // by block: energy that friction at the points of a solved cable dissipates [J]
     Column<Vec3> sum_impulse;  // by block: total impulse of a solved cable on the moving nodes [N s]
     Index mobilities = 0;      // number of entries of all mobility matrices
-    Index first_solved = 0;    // row of the first block with `solved` set; all later blocks have it set, too
+    Index first_solved = 0;    // row of the first block with `solved` set; `solved` is set in all later blocks
 
     std::span<const CableBlock> solved() const { return block.span().subspan(static_cast<std::size_t>(first_solved)); }
     void for_each_column(auto&& visit) {

@@ -34,21 +34,23 @@ struct CavityTable {
     Column<std::uint32_t> slot;
     Column<Index> body;  // row of BodyTable
     Column<CavityLaw> law;
-    Column<std::uint8_t> closed;  // 1: every edge of the faces belongs to two of them
+    Column<std::uint8_t> closed;  // 1: every edge of a face belongs to two faces of the cavity
     Column<Range> faces;          // rows of `face`
     // Rows of `key`, at least one. Law `pressure`: pressure above ambient [Pa]. Law `gas`: flow of gas into the cavity
     // [kg/s]. Law `liquid`: volume that the liquid has at ambient pressure [m^3].
     Column<Range> keys;
     Column<CavityFluid> fluid;
     Column<Real> mass;  // mass of the gas [kg]
-    // Volume of a cavity that is not closed, with its faces at `corners` [m^3]. A step adds the volume that the faces
-    // sweep while they move on from `corners`. Unused if `closed` is 1.
+    // Volume of a cavity that is not closed, at the end of the last step, with its faces at `corners` [m^3]. The
+    // present volume is greater by the volume that the faces have swept since then. Unused if `closed` is 1 or the law
+    // is `pressure`.
     Column<Real> volume;
     Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
     Column<Real> volume_now;    // volume at the start of this step [m^3]
     // The next columns have one row per face.
     Column<std::array<Index, 3>> face;  // node numbers in the mesh of the body
-    // Columns of the matrix: positions of the three nodes at the end of the last step [m]. Unused if `closed` is 1.
+    // Columns of the matrix: positions of the three nodes at the end of the last step [m]. Unused if `closed` is 1 or
+    // the law is `pressure`.
     Column<Mat3> corners;
     Column<Vec3> area;         // area times the normal that points from the body into the cavity, in this step [m^2]
     Column<Real> swept_parts;  // working memory of add_cavity_forces: swept volume of each group of faces [m^3]

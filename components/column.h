@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// A field of a table: rows of plain data. A column grows like a vector and never shrinks its memory, so that a steady
-/// state allocates nothing. New rows made by resize are value-initialised.
+/// A field of a table: rows of plain data. A column grows like std::vector. It keeps its memory when rows are removed,
+/// so that later steps reuse the memory instead of allocating. New rows made by resize are value-initialised.
 template <class T>
 class Column {
 public:
@@ -92,8 +92,8 @@ private:
 
     static T* rows(const RowMemory& memory) { return static_cast<T*>(memory.rows()); }
 
-    // All accesses to the rows call seen() or changed(), which check the access if checks are enabled. They are always
-    // inlined, so that without checks they cost nothing, even in a build without optimisation.
+    // All accesses to the rows call seen() or changed(), which check the access if checks are enabled. Both functions
+    // are always inlined, so that without checks they cost nothing, even in a build without optimisation.
     [[gnu::always_inline]] const RowMemory& seen() const {
         if constexpr (access_is_checked) check_access(this, sizeof *this, false);
         return memory_;

@@ -1,4 +1,4 @@
-// The role of a column in the state of a world.
+// Roles of columns: they decide which columns are hashed and which are saved.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,15 @@ enum class ColumnRole : std::uint8_t {
     state,  // the next step depends on the column, and the column cannot be derived from other columns
     // state that is not hashed as stored: state_hash.cpp hashes, for example, a handle slot instead of a row index
     link,
-    body,      // `link` to a row of BodyTable, or no_index; only in tables that Model::for_each_joining visits
-    collider,  // `link` to a row of ColliderTable, or no_index; only in tables that Model::for_each_joining visits
-    memory,    // no result depends on the column; most such columns are bounds that decide when a check is repeated
-    derived,   // computed from the state by the function that the comment of the table names
-    scratch,   // values that each step writes before reading them, or that affect no result
+    // like `link`: row of BodyTable, or no_index; only in tables of objects that join bodies (Model::for_each_joining)
+    body,
+    // like `link`: row of ColliderTable, or no_index; only in tables that Model::for_each_joining visits
+    collider,
+    // no result of a step depends on the column; most such columns are bounds that tell when a check must be repeated,
+    // for example a collision search
+    memory,
+    derived,  // computed from the state; the comment of the table names the function that does it
+    scratch,  // values that each step writes before reading them, or that affect no result
 };
 
 inline constexpr bool is_state(ColumnRole role) {

@@ -3,8 +3,8 @@
 
 namespace skerry {
 
-/// Makes gcc compute x at the call, not later: the empty asm statement may change x, as far as gcc knows. Otherwise gcc
-/// may delay the operation until its result is used and keep the operands until then, or keep results that only rare
+/// Makes gcc compute x at the call, not later: as far as gcc knows, the empty asm statement may change x. Otherwise gcc
+/// may delay the operation until x is used, and keep all operands until then. It may also keep results that only rare
 /// branches use. Registers then run out, and values go through memory. Without AVX a vector of a kernel does not fit
 /// into one register, as the asm constraint requires; x is then returned unchanged.
 template <class T>

@@ -1,4 +1,4 @@
-// Contacts of this step, and the impulses stored as warm start of the next step.
+// Contacts of this step, and their impulses, with which the solver starts in the next step (warm start).
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// Kinds of contacts. In a point_collider, edge_collider or face_collider contact a node, an edge or a face of a body
-/// touches an analytic collider (one that is given by a formula, not by a mesh).
+/// Kinds of contacts. The last three are contacts of a node, an edge or a face of a body with an analytic collider,
+/// which is given by a formula, not by a mesh.
 enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider, edge_collider, face_collider };
 template <>
 inline constexpr std::uint64_t value_count<ContactKind> = 5;
@@ -62,7 +62,8 @@ struct ContactRow {
     ContactKind kind;
     Stencil stencil;
     Vec3 point;  // contact point on the second partner [m]
-    // unit vector from the second partner to the first; the first partner has the point, or the first edge
+    // unit vector from the second partner of the contact to the first; the first partner is the object with the point,
+    // or with the first edge
     Vec3 normal;
     Real gap;       // `distance` minus the contact distance [m]
     Real distance;  // signed distance of the two surfaces; negative if they overlap [m]
@@ -132,8 +133,8 @@ struct WarmStartTable {
     Column<Vec3> impulse;  // [N s]
     Column<Vec3> normal;
     Column<Vec3> point;  // contact point [m]; empty if no body is rigid or implicit
-    // One row: time for which forces acted in the step that computed `impulse` [s]. No row if that step had no
-    // contacts.
+    // At most one row: time for which forces acted in the step that computed `impulse` [s]. There is no row if that
+    // step had no contacts.
     Column<Real> step;
 
     void for_each_column(auto&& visit) {

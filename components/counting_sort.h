@@ -9,8 +9,8 @@
 namespace skerry {
 
 /// Stable sort of rows by the integer key number_of(row), which lies between 0 and `end` - 1. To sort by several keys,
-/// sort by the least significant key first. `buffer` is working memory. Several sorts should share it, because
-/// accessing newly allocated pages costs as much as a sort.
+/// sort by the least significant key first. `buffer` is working memory. Several sorts should share `buffer`, because
+/// the first access to newly allocated memory takes as long as a sort.
 template <class Row>
 void counting_sort(std::vector<Row>& rows, std::vector<Row>& buffer, Index end, auto&& number_of) {
     std::vector<std::size_t> next(static_cast<std::size_t>(end) + 1, 0);

@@ -1,4 +1,4 @@
-// Impulse and work of forces from outside in a step.
+// Impulse and work of external forces in a step.
 #pragma once
 
 #include "components/types.h"

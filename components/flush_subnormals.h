@@ -1,5 +1,5 @@
-// Treats subnormal numbers (below 1e-38 in single precision) as zero, since processors need a hundred cycles or more
-// for an operation on them.
+// Treats subnormal numbers (below 1e-38 in single precision) as zero. Processors need a hundred cycles or more for an
+// operation on a subnormal number.
 #pragma once
 
 #ifdef __SSE2__

@@ -1,4 +1,5 @@
-// Marks of ghosts. Sums over bodies leave out ghosts, because the rank that owns the body counts it.
+// Marks of ghosts, which are copies of bodies that another rank (process) owns. Sums over bodies leave out ghosts,
+// because the owner counts the body.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Handles with generations. The user refers to a body, collider, material, joint and the like by its handle.
+// Handles: numbers by which the user of the library refers to bodies, colliders, materials, joints and other objects.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace skerry {
 /// its slot has been reused. A handle to a row of another world is recognised as foreign.
 template <class Tag>
 struct Handle {
-    std::uint32_t slot = 0xffffffffu;  // number of the slot; other handles reuse it later
-    std::uint32_t generation = 0;      // changes each time the slot is reused
+    std::uint32_t slot = 0xffffffffu;  // entry of HandleMap that stores the row; later handles may reuse the entry
+    std::uint32_t generation = 0;      // grows each time the slot is reused, so that older handles become stale
     std::uint32_t world = 0;           // number of the world; a copy of a world has the number of the original
 
     auto operator<=>(const Handle&) const = default;
@@ -34,7 +34,7 @@ template <class HandleType>
 class HandleMap {
 public:
     /// Number of the world that owns the rows. A copy of a world, and a world that was saved and loaded, has the number
-    /// of the original, so that earlier handles stay valid. No step depends on the number.
+    /// of the original, so that earlier handles stay valid. The number has no effect on the results of steps.
     std::uint32_t world() const { return world_; }
     /// Sets the number of the world.
     void set_world(std::uint32_t number) { world_ = number; }
@@ -70,8 +70,8 @@ public:
         if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
     }
 
-    /// Ensures that handles made from now on differ from all handles that `other` has issued, so that these stay stale.
-    /// `other`: map of the same world, which this map replaces (World::reset).
+    /// Ensures that no handle made from now on equals a handle that `other` has issued. Handles of `other` that are
+    /// stale in this map thus stay stale. `other`: map of the same world, which this map replaces (World::reset).
     void differ_from(const HandleMap& other) {
         least_generation_ = std::max(least_generation_, other.least_generation_);
         for (std::size_t slot = 0; slot < other.row_.size(); ++slot)
@@ -79,18 +79,18 @@ public:
         for (std::size_t slot = 0; slot < row_.size(); ++slot)
             if (row_[slot] == no_index) generation_[slot] = std::max(generation_[slot], least_generation_);
     }
-    /// Least generation of the handles that will be issued. It is saved with the columns.
+    /// Lower limit of the generation of every new handle; differ_from() raises it. It is saved with the columns.
     std::uint32_t& least_generation() { return least_generation_; }
 
-    /// Updates all live handles after rows of the table were removed. The handles of these rows must have been released
-    /// by forget before. `row_now`: new index of each old row, no_index for removed rows.
+    /// Updates all live handles after rows of the table were removed. The handles of the removed rows must already have
+    /// been released by forget(). `row_now`: new index of each old row, no_index for removed rows.
     void rows_moved(std::span<const Index> row_now) {
         for (Index& row : row_)
             if (row != no_index) row = row_now[static_cast<std::size_t>(row)];
     }
 
     bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }
-    /// The live handle with this slot number. Table rows store slot numbers.
+    /// The live handle with this slot number. A row of a table stores only the slot number of its handle.
     HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 
     void for_each_column(auto&& visit) {

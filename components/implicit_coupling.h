@@ -17,11 +17,11 @@ struct ImplicitCoupling {
     // nodes, in the frame of the mesh [1/kg]. The matrix is symmetric, stored column by column, and has three rows per
     // node. The implicit bodies own the memory.
     Column<std::span<const Real>> response;
-    // Matrices by row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world frame.
-    // `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
-    // parameter theta of the time integration. If the body is in a long step, it also multiplies by t/h, with the
-    // length h of this step and the time t from the start of the long step to the end of this step
-    // (docs/methods/implicit_bodies.md 9).
+    // Matrices, one for each row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world
+    // frame. `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
+    // parameter theta of the time integration. If the body is in a long step, which covers several steps of the world,
+    // the matrix also contains the factor t/h. h is the length of this step, and t the time from the start of the long
+    // step to the end of this step (docs/methods/implicit_bodies.md 9).
     Column<Mat3> turn, impulse_turn;
     Column<Index> touched_index;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
 

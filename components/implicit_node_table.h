@@ -11,10 +11,12 @@ namespace skerry {
 
 struct ImplicitNodeTable {
     Column<Vec3> displacement;  // displacement u by the deformation, in the frame of the mesh [m]
-    Column<Vec3> velocity;  // deformation velocity w; for a held body the world velocity in the axes of the frame [m/s]
-    // Change of the velocity w by contacts in the previous long step, times the length of that step [m]. The present
-    // long step first assumes that these contacts act again, and gradually replaces them by its own contacts
-    // (docs/methods/implicit_bodies.md 9). Zero for a body in no long step. carry_long_steps writes it.
+    // deformation velocity w; for a body held by an attachment: world velocity in the axes of the frame [m/s]
+    Column<Vec3> velocity;
+    // Change of the velocity w by contacts in the previous long step, times the length of that step [m]. A long step is
+    // a step of the body that covers several steps of the world. The present long step first assumes that these
+    // contacts act again, and gradually replaces them by its own contacts (docs/methods/implicit_bodies.md 9). Zero for
+    // bodies without long steps. carry_long_steps writes the column.
     Column<Vec3> left;
     // kick_implicit_bodies writes the next three columns in this step.
     Column<Vec3> elastic_force;
@@ -28,7 +30,8 @@ struct ImplicitNodeTable {
     Column<Vec3> contact_impulse;  // sum of the contact impulses on the node, in the world frame [N s]
     // strain_implicit_bodies writes the next two columns.
     Column<Vec3> displacement_next;
-    // rate of change K w of the elastic force; nodes in the order of the factorised matrix [N/s]
+    // rate of change K w of the elastic force, with the stiffness matrix K; nodes in the order of the factorised matrix
+    // [N/s]
     Column<Vec3> force_rate;
 
     std::size_t size() const { return displacement.size(); }

@@ -152,14 +152,14 @@ struct AxisLaw {
     Real kick = 0;  // time for which forces act in this step [s]
 };
 
-/// Share of a block in a mimic equation, which couples the velocities u along the axes of two joints: c u + c_leader
-/// u_leader = the rate that corrects the error of the coordinates (docs/methods/joints.md 5). The equation has two
-/// adjacent blocks, first that of the joint that mimics, then that of its leader. Only the third rows of these blocks
-/// are used.
+/// Part of a block in a mimic equation, which couples the velocities u and u_leader along the axes of two joints: c u +
+/// c_leader u_leader = r. c and c_leader are coefficients, and the rate r corrects the error of the coordinates
+/// (docs/methods/joints.md 5). The equation has two adjacent blocks: the block of the joint that mimics, then that of
+/// its leader. Only the third rows of these blocks are used.
 struct MimicShare {
     Real coefficient = 0;  // c of the block; 0: the block belongs to no mimic equation
     bool leads = false;    // true for the block of the leader
-    // own_node() of the other block of the equation; serves to put both blocks into one contact region
+    // own_node() of the other block of the equation; needed to put both blocks into one contact region
     Index other_node = no_index;
 };
 
@@ -170,10 +170,10 @@ struct JointBlock {
     Index joint;          // row of JointTable
     bool turning;         // true: the equations constrain angular velocities
     Index first, second;  // rows of RigidBodyTable; no_index for the world
-    // First node of each body. It represents the body in the search for contact regions. no_index if impulses cannot
+    // First node of each body, which represents the body in the search for contact regions; no_index if impulses cannot
     // move the body.
     Index first_node, second_node;
-    Vec3 point;  // point of the equations in the world frame [m]
+    Vec3 point;  // point at which the equations constrain the motion, in the world frame [m]
     Mat3 frame;  // columns: directions of the three equations
     Vec3 error;  // position error of the joint along the locked directions [m or rad]
     AxisLaw axis;
@@ -182,7 +182,7 @@ struct JointBlock {
 
     /// first_node, or second_node if impulses cannot move the first body; no_index if they can move neither body.
     Index own_node() const { return first_node == no_index ? second_node : first_node; }
-    /// own_node(), or the one of the other block of the mimic equation if this block can move no body.
+    /// own_node(); if this block can move no body, own_node() of the other block of its mimic equation.
     Index moving_node() const { return own_node() == no_index ? mimic.other_node : own_node(); }
     /// Calls join(a, b) for nodes a, b of bodies that the block couples. `join` must put both nodes into the same
     /// contact region.
@@ -200,7 +200,8 @@ struct JointBlockTable {
     Column<AxisImpulses> axis_impulse;  // by block: impulses along the joint axis
     Column<Real> coordinate;            // by row of JointTable: joint coordinate at the start of the step
     // For each row of JointTable: 1 if neither body of the joint can move, because it is asleep, held, or the world.
-    // The joint then has no block and keeps its last impulse. While no body of the world sleeps, the value is 0.
+    // The joint then has no block and keeps its last impulse. While no body of the world sleeps, the value is 0 for all
+    // joints.
     Column<std::uint8_t> resting;
 
     std::size_t size() const { return block.size(); }

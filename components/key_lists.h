@@ -23,8 +23,8 @@ Real mean_value(std::span<const TimeKey> keys, Real t, Real h);
 /// Returns whether the value changes at any time from `t` to `t + h`.
 bool changes(std::span<const TimeKey> keys, Real t, Real h);
 
-// A table with a list of keys in each row has a column with the range of each list, and the column `key` with the keys
-// of all lists.
+// Some tables have a list of keys in each row. Such a table has the column `key` with the keys of all lists, and a
+// column with the range of each list in `key`.
 
 /// Erases the list of one row from columns that contain the lists of all rows. `range`: range of the list of each row.
 template <class... T>

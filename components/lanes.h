@@ -21,20 +21,21 @@ struct alignas(sizeof(T) * W <= 64 ? sizeof(T) * W : 64) Lanes {
 };
 
 /// A vector of element_lanes reals. The vector fills one register, or two or four registers on older machines. A vector
-/// type of the compiler is used instead of a loop over Lanes. Such a type does not depend on auto-vectorisation, and
-/// every lane gets the same bits as the same source code with a single Real.
+/// type of the compiler is used instead of a loop over Lanes. Such a type does not depend on auto-vectorisation. Every
+/// lane gets bitwise the result that the same source code computes for a single Real.
 typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 
 /// Half of the lanes of a Real8.
 typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
 
-// Vectors of single precision: Float8 has a number for each lane of a block, Float4 for half of the lanes.
+// Vectors of single precision: Float8 has one number for each of the eight lanes of a block, Float4 one for each of
+// four lanes.
 typedef float Float8 __attribute__((vector_size(sizeof(float) * element_lanes)));
 typedef float Float4 __attribute__((vector_size(sizeof(float) * element_lanes / 2)));
 
 // Types for loads of vectors from the address of any Real. They need no alignment and may alias other reals. memcpy is
-// not used: without 512-bit registers the compiler turns memcpy into copies of 16 bytes, and a load of 32 bytes right
-// after such copies has to wait for them.
+// not used, because without 512-bit registers the compiler turns it into copies of 16 bytes. A load of 32 bytes right
+// after such copies would have to wait for them.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 typedef float Float8InMemory __attribute__((vector_size(sizeof(Float8)), may_alias));
@@ -49,7 +50,7 @@ template <class T>
 inline constexpr std::size_t lanes_of = sizeof(T) / sizeof(Real);
 // number of KernelReal vectors that hold the lanes of one block
 inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>;
-/// One value for each KernelReal of a block: one if a register holds all eight lanes, two if it holds four.
+/// One T for each KernelReal of a block: one T if a register holds all eight lanes, two if it holds four.
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 

@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// One row per load. A force, or a traction on the rest area, exerts on a node the product of `vector`, the node's
-/// `weight` and the scale (`scale_keys`), which may change over time. For all other loads see docs/methods/loads.md 1.
+/// One row per load. A force, or a traction on the rest area, exerts on a node the force scale * weight * vector. The
+/// scale may change over time (`scale_keys`). For all other loads see docs/methods/loads.md 1.
 struct LoadTable {
     Column<std::uint32_t> slot;
     Column<LoadKind> kind;

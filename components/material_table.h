@@ -59,8 +59,8 @@ inline constexpr Real guard_modulus = 5;
 
 /// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero. If
 /// the material yields, the part `shear` has lambda = -2/3 mu. Its bulk modulus lambda + 2/3 mu is then zero. Otherwise
-/// plastic flow, which keeps the volume, would lock. The constants of an inversion barrier include no damping; only
-/// inversion barriers that belong to a cluster are viscous.
+/// the elements of this part would resist plastic flow, which keeps the volume (volumetric locking). The constants of
+/// an inversion barrier include no damping.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,
@@ -97,8 +97,8 @@ struct MaterialTable {
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
     Column<OrthotropicModuli> orthotropic;  // used by the law `orthotropic`
-    // decay rate of velocities relative to the rigid motion of the body; of all its velocities if nodes are pinned
-    // [1/s]
+    // decay rate of velocities relative to the rigid motion of the body, or of all velocities if nodes of the body are
+    // pinned [1/s]
     Column<Real> damping;
     Column<std::uint8_t> sets_losses;  // 1 if the user has set a loss factor above 0
     Column<std::uint32_t> slot;        // handle slot

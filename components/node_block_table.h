@@ -13,8 +13,8 @@ namespace skerry {
 // Number of nodes of a sphere that take part in a step. These are the core nodes, which contacts use, and the nodes
 // from which the angular velocity of the body is measured. All other nodes serve only to display the body.
 inline constexpr Index sphere_step_nodes = 13;  // the centre and the 12 corners of an icosahedron
-// Number of nodes of a capsule that take part in a step: both ends of the axis, and one pole and four rim points at
-// each end.
+// Number of nodes of a capsule that take part in a step: both ends of the axis, and on each end cap its pole and four
+// points of its rim.
 inline constexpr Index capsule_step_nodes = 12;
 // Number of core nodes of a cylinder. All nodes of a cylinder take part in a step, because the nodes on its rims show
 // its rotation.
@@ -26,8 +26,8 @@ inline Range step_nodes_of(Range all, Index core_nodes) {
     return {all.begin, std::min(all.begin + (core_nodes == 1 ? sphere_step_nodes : capsule_step_nodes), all.end)};
 }
 
-// Number of nodes per block. It is fixed, because a sum over a body is computed as the sum over its blocks in block
-// order and must not depend on the number of workers.
+// Number of nodes per block. It is fixed, because sums over a body are computed block by block. With a fixed block size
+// they do not depend on the number of workers.
 inline constexpr Index nodes_per_block = 256;
 
 /// Sums over the nodes of one block that can move. Positions x and velocities v are relative to the first node of the

@@ -1,4 +1,5 @@
-// Clusters: groups of nodes whose accelerations are coupled by one inertia matrix (docs/methods/clusters.md).
+// Clusters: groups of nodes whose accelerations are coupled by one inertia matrix, because the elements between them
+// are integrated implicitly (docs/methods/clusters.md).
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// Options that a user selects by name. EnumNames is the only list of the names of each enum. The scene reader, the help
-// of the program and the reports use it.
+// Options that a user selects by name. EnumNames lists the names of each enum. The scene reader, the help of the
+// program and the reports use this list only.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ enum class MaterialModel {
     stable_neo_hookean,  // for large strain; the energy is finite even for inverted elements (Smith et al. 2018)
     ogden,               // for rubber at large strain (Ogden 1972); see MaterialSettings::terms
     orthotropic,         // for wood and composites at strains of some per cent; see MaterialSettings::orthotropic
-    hencky,              // logarithmic strain; the only law that can yield, see MaterialSettings::plasticity
+    hencky,              // for logarithmic strain; the only law with plasticity, see MaterialSettings::plasticity
     guard,               // the inversion barrier of docs/methods/elasticity.md 7.7; materials cannot have this law
 };
 /// Elements that compute the stress of a body (docs/methods/elasticity.md 7).
@@ -76,9 +76,9 @@ enum class OverlapKind {
 /// Time integrators (docs/step_length.md). Both alternate a kick, in which forces change velocities, and a drift, in
 /// which velocities change positions.
 enum class Integrator {
-    symplectic_euler,  // first order in the step length when started from given velocities, with bounded energy
-    // Second order in smooth motion: the positions also drift forward by half a step before the first step of a call of
-    // World::advance, and back by half a step after its last step.
+    symplectic_euler,  // first order in the step length if started from given velocities; bounded energy error
+    // Second order in smooth motion: in a call of World::advance, the positions also drift forward by half a step
+    // before the first step, and back by half a step after the last step.
     leapfrog,
 };
 

@@ -1,5 +1,5 @@
-// Pairs of close objects: two bodies, a body and a collider, or a body and itself. Each pair has a list of candidates:
-// pairs of features (points, edges, triangles) that could touch soon.
+// Pairs of close objects, called the partners of the pair: two bodies, a body and a collider, or a body and itself.
+// Each pair has a list of candidates: pairs of features (points, edges, triangles) that could touch soon.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace skerry {
 /// TriangleTable, EdgeTable or ColliderTable, depending on the kind of the pair and of the features.
 struct Candidate {
     std::uint64_t feature;  // ContactKey::feature
-    // row of the vertex, of the edge of the first body, or, against a point of a collider, of the triangle
+    // row of the vertex, or of the edge of the first body; for a triangle that touches a collider, row of the triangle
     Index first;
     Index second;  // row of the triangle, of the edge of the second body, or of the collider
 };
@@ -56,7 +56,8 @@ struct NearCandidate {
 struct LeafPair {
     Index first;
     Index second;
-    // Features of the two leaves that are not candidates cannot touch before they have approached by this distance [m].
+    // Lower bound: two features of these leaves that are missing in the candidate list must approach each other by more
+    // than this distance before they can touch [m].
     Real spare;
 };
 template <>
@@ -64,7 +65,7 @@ struct MembersOf<LeafPair> {
     static std::span<const Member> list();
 };
 
-/// Close leaves of a body that is paired with itself.
+/// Pairs of close leaves in the tree of a body that is paired with itself.
 struct LeafPairTable {
     // The first row is the pair of the root with itself. It represents all pairs of leaves that are not listed. The
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
@@ -80,9 +81,10 @@ struct SelfSearch {
     // For each node: position at the last update of LeafPair::spare [m]. The column is saved with the role `memory`.
     Column<Vec3> origin;
     // For each node: displacement from `origin` to the present position, without the common rotation of the body [m].
-    // The check at the end of a step replaces the present position by the position at the end of the step.
+    // The check at the end of a step uses the position at the end of the step instead of the present one.
     Column<Vec3> moved;
-    // Boxes of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
+    // Boxes by row of BvhTable: each contains the vectors `moved` [m] or the velocities [m/s] of all mesh nodes below a
+    // node of the tree.
     Column<Aabb> moved_box, speed_box;
     // For each row of VertexTable, EdgeTable and TriangleTable: row of BvhTable of the leaf that owns the feature.
     Column<Index> leaf_of_vertex, leaf_of_edge, leaf_of_triangle;
@@ -91,7 +93,7 @@ struct SelfSearch {
 
 /// One row per pair of objects whose bounding boxes were close at the last broad search, in the order of
 /// ContactKey::pair. The candidate list of each pair is a separate column. One pair can therefore be searched again
-/// without moving the lists of other pairs. Lists with an index of size() or more are spare memory.
+/// without moving the lists of other pairs. Candidate lists with an index of size() or more are spare memory.
 struct PairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
     Column<PairKind> kind;
@@ -103,28 +105,28 @@ struct PairTable {
     Column<Vec3> frame_apart;  // MovingFrame::position of the first body minus that of the second body [m]
     // length of the path of the first body's frame relative to the second body's frame since the pair was found [m]
     Column<Real> frame_path;
-    // Bound on the relative motion of the partners so far, computed in every step [m]. Two bodies: BodyTable::travel of
-    // both bodies plus frame_path. Body and collider: `travel` of the body and of the collider, plus the path length of
-    // the body's frame.
+    // Counter that bounds the relative motion of the partners from above; computed in every step [m]. Two bodies:
+    // BodyTable::travel of both bodies plus frame_path. Body and collider: `travel` of the body and of the collider,
+    // plus the path length of the body's frame.
     Column<Real> travel;
     Column<Real> travel_bound;  // `travel` plus the distance by which the partners may approach in this step [m]
     // Distance by which the partners may approach in this step at their greatest speeds [m]. It is computed from
-    // velocities in the world, because contacts depend on it: a restored world does not have the moving frames of its
-    // bodies, but must find the same contacts.
+    // velocities relative to the world, not to the moving frames of the bodies: contacts depend on this distance, and
+    // no result may depend on the frames, which have the role `memory`.
     Column<Real> closing;
-    // Relative motion of the partners for which an earlier attempt at this step requested a longer candidate list [m];
-    // 0: no request. Once the list has been rebuilt for this motion, the value is made negative, so that a list is not
-    // requested twice for the same motion.
+    // Request of an earlier attempt at this step for a longer candidate list: relative motion of the partners that the
+    // list must allow [m]; 0: no request. Once the list has been rebuilt for this motion, the value is made negative,
+    // so that no list is requested twice for one motion.
     Column<Real> longer_motion;
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
-    // 1: the candidate list was made at the positions at the start of this step. The list then stays valid longer:
-    // displacements of the bodies in their frames before the step do not count (is_beyond_list).
+    // 1: the candidate list was made at the positions at the start of this step. The list then stays valid longer,
+    // because displacements of nodes in the moving frames before this step do not count (is_beyond_list).
     Column<std::uint8_t> rebuilt;
     // State of the surfaces at the last search; not used for a body and an analytic collider. Surfaces that are apart
     // stay apart, because find_crossings prevents them from crossing.
     Column<PairState> state;
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by `feature`
-    // Value of travel_bound below which the features of a candidate cannot touch, by pair and candidate [m].
+    // The features of a candidate cannot touch while travel_bound is below this value [m]; by pair and candidate.
     std::vector<Column<Real>> asleep_until;
     std::vector<LeafPairTable> leaf_pairs;  // by pair; empty for two bodies, and for a body and a collider
     // For each group of consecutive pairs: cost of testing their candidates. cut_blocks then replaces it by the sum of
@@ -136,10 +138,11 @@ struct PairTable {
     Column<std::size_t> block_first;  // by block: row of ContactTable for its first contact
     // For each block of find_contacts: contacts found in this step, in candidate order.
     std::vector<Column<ContactRow>> found;
-    // For each block of find_contacts: candidates of pairs of two bodies that find_crossings must test, in candidate
-    // order.
+    // For each block of find_contacts: candidates that find_crossings must test, in candidate order; only of pairs of
+    // bodies, not of a body and a collider.
     std::vector<Column<NearCandidate>> near;
-    // For each block of find_contacts: lower bound of the distances of all tested features [m].
+    // For each block of find_contacts: lower bound of the distances of the candidates that it has tested; skipped
+    // candidates do not count [m].
     Column<Real> block_nearest;
     SelfSearch self;
 
@@ -184,17 +187,17 @@ struct FoundPair {
     Real frame_path;   // [m]
 };
 
-/// Features that crossed in an earlier attempt at this step. The step is attempted again with contacts between these
-/// features.
+/// Pairs of features that would pass through each other, found in an earlier attempt at this step. The step is
+/// attempted again with contacts between these features.
 struct CrossingTable {
     Column<ContactRow> row;  // contacts of the features that crossed, in key order; empty once the step is committed
     std::vector<Column<ContactRow>> found;  // by block of find_contacts: crossings found in the last attempt
     std::size_t found_count = 0;            // number of rows of `found`
     Column<ContactRow> merged;              // working memory
-    // True: if a pair moves further than its candidate list is valid for, the list is extended. False: the step is
-    // rejected.
+    // Reaction to a pair that moves further than its candidate list is valid for. True: the list is extended. False:
+    // the attempt is rejected.
     bool extends_lists = true;
-    // true: find_crossings stopped the last attempt at the step, so that candidate lists are extended
+    // true: find_crossings tested no features in the last attempt, because candidate lists must first be extended
     bool beyond_lists = false;
     // True: crossings in this attempt are permitted, and their pairs are marked as overlapping.
     bool last_attempt = false;
@@ -209,20 +212,21 @@ struct BoundingSphere {
     Real radius;  // [m]
 };
 
-/// Working memory of the searches. It is reused in later steps, so that a steady state allocates nothing.
+/// Working memory of the searches. Later steps reuse it, so that they need not allocate memory.
 struct SearchMemory {
     // For each body and each collider: 1 if the object was added, or moved by the user, since the last search. Its
-    // distances to other objects are then unknown. The values are those at the start of the step.
+    // distances to other objects are then unknown. The flags tell the state at the start of the step.
     Column<std::uint8_t> body_forgotten, collider_forgotten;
     // For each body: 1 if BodyTable::max_speed and frame_speed are out of date, because the user has added or moved the
     // body and no step has been committed since. Rejected attempts do not update the two columns. Valid while
     // any_unmeasured is set.
     Column<std::uint8_t> body_unmeasured;
     bool any_unmeasured = false;
-    // For each body: sum of its travel, the path length of its frame, and the distance it may move in this step [m].
+    // For each body: sum of its travel, the path length of its frame, and the greatest distance that it may move in
+    // this step [m].
     Column<Real> body_travel_bound;
-    // Distance that a node of the body may move in this step [m]. body_frame_reach: relative to the frame of the body.
-    // body_reach: relative to the world.
+    // For each body: greatest distance that a node may move in this step, relative to the frame of the body
+    // (body_frame_reach) or to the world (body_reach) [m].
     Column<Real> body_frame_reach, body_reach;
     // For each collider: sum of its travel and the distance it may move in this step [m].
     Column<Real> collider_travel_bound;
@@ -268,17 +272,17 @@ struct SearchMemory {
     std::vector<Column<FoundCandidate>> found;  // by block of the search: found candidates
 };
 
-/// Limits that decide when the broad search runs again, and counts of searches. An object that the user has added or
-/// moved is *forgotten*: all its pairs are found and searched again, while other pairs keep their candidate lists. New
-/// rows of objects, for which the columns are too short, count as forgotten. The rows of removed objects are erased
-/// from the columns.
+/// Limits that decide when the broad search, which finds the pairs, runs again; and counts of searches. An object that
+/// the user has added or moved is *forgotten*: all its pairs are found and searched again, while other pairs keep their
+/// candidate lists. New rows of objects, for which the columns are too short, count as forgotten. The rows of removed
+/// objects are erased from the columns.
 struct SearchState {
     static constexpr Real forgotten = -infinity;
 
-    // For each body: limit of body_travel_bound [m]. The set of pairs is complete while every body is below its limit,
-    // and every collider below its collider_valid_until.
+    // For each body: upper limit of body_travel_bound [m]. The set of pairs is complete while every body and every
+    // collider is below its limit.
     Column<Real> body_valid_until;
-    // For each collider: limit of collider_travel_bound. It has the same purpose as body_valid_until for bodies [m].
+    // For each collider: upper limit of collider_travel_bound [m].
     Column<Real> collider_valid_until;
     std::uint64_t broad_searches = 0;
     std::uint64_t pair_searches = 0;
@@ -288,9 +292,9 @@ struct SearchState {
     void forget_body(std::size_t row) {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
     }
-    /// Ends an attempt at a step. If the step was `committed`, the speeds of all bodies are known.
-    /// Otherwise the speeds of bodies that were forgotten at the start of the step are still unknown, so these bodies
-    /// are marked as forgotten again.
+    /// Ends an attempt at a step. If the step was `committed`, the speeds of all bodies are known. Otherwise the speeds
+    /// of bodies that were forgotten at the start of the step are still unknown. These bodies are then marked as
+    /// forgotten again.
     void end_step(bool committed) {
         if (!memory.any_unmeasured) return;
         for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)

@@ -1,4 +1,4 @@
-// Prefetching.
+// Prefetching of array items into the caches.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Level of the caches that a prefetch fills, as the compiler's built-in function counts them.
+/// Level of the caches that a prefetch fills. The values are those of the argument `locality` of __builtin_prefetch.
 enum class CacheLevel { l1 = 3, l2 = 2 };
 
 /// Prefetches the cache lines of `count` items and does not wait for the data. The compiler unrolls the loop completely

@@ -40,8 +40,8 @@ inline Index row_without(Index row, std::span<const Range> erased) {
     return row - below;
 }
 
-/// Appends the range `rows` to the ascending list `erased` of removed ranges. If `rows` begins where the last range
-/// ends, the two ranges are merged. `rows` must come after all listed rows.
+/// Appends the range `rows` to the ascending list `erased` of removed ranges. If `rows` begins where the last listed
+/// range ends, the two are merged into one range. `rows` must come after all listed rows.
 void append_gone(Range rows, auto& erased) {
     if (rows.size() == 0) return;
     if (!erased.empty() && erased.back().end == rows.begin)

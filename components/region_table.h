@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// Result of the solver for a region. `certified`: zero impulses or the warm start are the solution, so there were no
-/// sweeps.
+/// Result of the solver for a region. `certified`: zero impulses or the warm start solved the problem, so the solver
+/// made no sweeps.
 enum class RegionStatus : std::uint8_t { converged, certified, iteration_limit, not_finite };
 
 /// Shortcuts that the solver used for a region; several shortcuts are combined with bitwise or.
@@ -31,8 +31,8 @@ struct RegionTable {
     Ragged<Index> contacts;  // rows of ContactTable, ascending
     Ragged<Index> joints;    // rows of JointBlockTable, ascending; `joints` has no rows if there are no joints
     Ragged<Index> cables;    // indices in CableBlockTable::solved(), ascending; no rows if there are no such cables
-    // Key that identifies the region across steps: the key of its first contact, or one made by recall_regions if it
-    // has no contact.
+    // Key that identifies the region across steps: the key of its first contact. For a region without contacts,
+    // recall_regions makes a key.
     Column<ContactKey> id;
     Column<Index> iterations;  // number of solver sweeps; 0 if a shortcut made sweeps unnecessary
     Column<Real> error;        // relative error e_nat of the solution (docs/methods/errors.md 2)
@@ -40,8 +40,8 @@ struct RegionTable {
     Column<RegionShortcut> shortcut;
     Column<Real> dissipated;  // energy dissipated by the contacts of the region in this step [J]
     Column<Real> push_work;   // energy that the displacements by NodeTable::push_out add [J]
-    // Rows of the regions in the order in which the solver starts them: first large regions by descending predicted
-    // cost, so that no long task starts late, then small regions by descending size (single contacts last).
+    // Rows of the regions in the order in which the solver starts them. Large regions come first, by descending
+    // predicted cost, so that no long task starts late. Small regions follow by descending size, single contacts last.
     Column<Index> order;
     bool pushed = false;  // true: some region has written NodeTable::push_out
 

@@ -20,8 +20,7 @@ namespace skerry {
 struct RigidBodyTable {
     Column<Index> body;  // row of BodyTable
     Column<Real> mass;   // [kg]
-    // The next columns describe the mass distribution of the rest shape, or of the current shape if the deformation is
-    // large.
+    // The next two columns describe the mass distribution of the rest shape, or of the present shape if `large` is 1.
     Column<Vec3> moments;           // moments of inertia about the principal axes [kg m^2]
     Column<Mat3> axes;              // columns: directions of the principal axes in the frame of the mesh
     Column<Vec3> rest_center;       // centre of mass in the frame of the mesh [m]
@@ -38,13 +37,14 @@ struct RigidBodyTable {
     Column<Mat3> held_rotation;
     // kick_rigid_bodies writes the next columns in this step.
     Column<Mat3> inverse_inertia;  // inverse inertia in the world frame [1/(kg m^2)]
-    // Impulse of gravity and external loads, and angular impulse about the centre of mass [N s, N m s].
+    // Impulse of gravity and external loads in this step, and their angular impulse about the centre of mass [N s, N m
+    // s].
     Column<Vec3> kick, moment_kick;
     // solve_regions adds to the columns contact_impulse to push_spin, which are zero when the step begins. The first
-    // two are the impulse of contacts and its angular impulse about the centre of mass [N s, N m s].
+    // two contain the impulse of all contacts, and their angular impulse about the centre of mass [N s, N m s].
     Column<Vec3> contact_impulse, contact_moment;
-    // Velocity and angular velocity of the push-out, which separates overlapping bodies: they change the pose in this
-    // step, but not the momentum [m/s, rad/s].
+    // Velocity and angular velocity of the push-out, the motion that separates overlapping bodies. They change the pose
+    // in this step, but not the momentum [m/s, rad/s].
     Column<Vec3> push_velocity, push_spin;
     // turn_rigid_bodies writes the next two columns.
     Column<Vec3> center_next;
@@ -55,7 +55,7 @@ struct RigidBodyTable {
     // and `rotation`.
     Column<Vec3> moments_next;
     Column<Mat3> axes_next, rotation_shaped;
-    // Angular impulse by which the attachment of a held implicit body balances the elastic forces, so that the frame of
+    // Angular impulse of the attachment on a held implicit body. It balances the elastic forces, so that the frame of
     // the body follows its prescribed motion [N m s].
     Column<Vec3> hold_moment;
     Column<std::uint8_t> large_next;

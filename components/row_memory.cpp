@@ -16,8 +16,7 @@ namespace {
 
 [[maybe_unused]] constexpr std::size_t large_page = std::size_t{2} << 20;
 
-/// Asks the system for large pages. The request is only a hint: if the system refuses, the memory is used with small
-/// pages.
+/// Asks the system for large pages. If the system refuses, the memory keeps its small pages.
 void request_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory);

@@ -1,4 +1,4 @@
-// Memory of columns. It consists of complete cache lines, and for long columns of 2 MiB pages if the system has them.
+// Memory of columns. It begins at a cache line. Long columns get pages of 2 MiB if the system has them.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@ namespace skerry {
 inline constexpr std::size_t row_alignment = 64;
 
 /// Allocates `bytes` bytes (0 is allowed) with operator new. On Linux, memory that covers complete pages of 2 MiB is
-/// requested as such pages. Reason: with pages of 4 kB, address translation takes 4 % of a step of 360,000 tetrahedra,
-/// because the TLB of a core does not cover the columns. Throws std::bad_alloc.
+/// requested as such pages. Reason: the columns of a large scene have more pages of 4 kB than the TLB of a core can
+/// hold. Address translation then takes 4 % of the time of a step (360,000 tetrahedra). Throws std::bad_alloc.
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory) noexcept;
 
-/// Rows of one column, of a trivially copyable type that only the caller knows. `row_bytes` is the size of a row
-/// [bytes] and must be the same in every call. Rows are copied bytewise and need no destructor. The memory never
+/// Rows of one column. Their type must be trivially copyable; only the caller knows it. `row_bytes` is the size of a
+/// row [bytes] and must be the same in every call. Rows are copied bytewise and need no destructor. The memory never
 /// shrinks.
 class RowMemory {
 public:

@@ -30,11 +30,11 @@ struct Member;
 struct RowType {
     std::size_t bytes;                            // size of a row [bytes]
     void (*make)(void* rows, std::size_t count);  // value-initialises `count` rows; vectors and matrices become zero
-    // If the row consists of numbers of one type, without padding: how many; 0 for all other rows.
+    // Count of the numbers in a row that consists of numbers of one type, without padding; 0 for all other rows.
     std::size_t width = 0;
     NumberType number = NumberType::uint8;  // type of the numbers in a row
-    std::uint64_t values = 0;               // value_count of the type; 0: any number is valid
-    // Returns the members of the row type; null: the type has no members.
+    std::uint64_t values = 0;               // the numbers must be below this limit (value_count); 0: no limit
+    // Returns the members of the row type; null: the type is not a struct with listed members.
     std::span<const Member> (*members)() = nullptr;
 
     /// True if the description is complete enough to save the rows.
@@ -90,8 +90,8 @@ struct MembersOf;
 template <class Enum>
 struct EnumNames;
 
-/// For bool (2) and for an enum with the values 0 to n - 1 (n): number of its values; a loaded value must be smaller.
-/// For other types, and for enums whose values are not checked: 0.
+/// Number of values of T: 2 for bool, n for an enum with the values 0 to n - 1. A value loaded from a file must be
+/// smaller than this number. 0 for all other types, and for enums whose loaded values are not checked.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>
@@ -137,8 +137,8 @@ constexpr RowType describe() {
 template <class T>
 inline constexpr RowType row_type = row_type_detail::describe<T>();
 
-/// Offset of a member from the start of a struct S [bytes]. offsetof() cannot be used, because it takes no pointer to
-/// member; zeroed memory takes the place of an object of type S.
+/// Offset of a member from the start of a struct S [bytes]. offsetof() cannot be used, because it does not accept a
+/// pointer to member. No object of type S is made: zeroed memory takes its place.
 template <class S, class T>
 std::size_t member_offset(T S::*member) {
     alignas(S) static const std::byte memory[sizeof(S)]{};

@@ -14,12 +14,13 @@ namespace skerry {
 /// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
 /// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If the exchange fails,
 /// because another thread has attached that root meanwhile, the join is repeated from the new root. Parents are thus
-/// always smaller than their children, so the root of a set is its smallest index, whatever the number of threads and
-/// the order of the joins. Relaxed memory order suffices: parent and stamp share one word, and no thread reads other
-/// data because of a word that it has seen. Threads must synchronise before they read the final sets.
+/// always smaller than their children. So the root of a set is its smallest index, whatever the number of threads and
+/// the order of the joins. Relaxed memory order suffices, because parent and stamp share one word, and no word tells a
+/// thread that other data are ready. Threads must synchronise before they read the final sets.
 struct SharedUnionFind {
-    /// Each word has two halves of 32 bits. The upper half is the stamp: the value of `now` when the word was written.
-    /// A word with an earlier stamp counts as empty. The lower half is the value that the member describes.
+    /// Each member is a word of two halves of 32 bits. The upper half is the stamp: the value of `now`, the number of
+    /// the present start(), when the word was written. A word with an earlier stamp counts as empty. The lower half is
+    /// the value that the member describes.
     struct Node {
         std::uint64_t parent;
         // At the root: bitwise complement of the smallest item passed to begin_with(). A smaller item thus gives a

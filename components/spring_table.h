@@ -40,7 +40,7 @@ struct SpringTable {
     AnchorColumns first, second;
     Column<Real> stiffness;     // [N/m]
     Column<Real> damping;       // [N s/m]
-    Column<Real> strength;      // limit of the force, which is clipped at this value [N]
+    Column<Real> strength;      // upper limit of the magnitude of the force [N]
     Column<Range> rest_length;  // range of rows in the column `key`
     // The four columns `force` to `rest_rate` describe the last step. They affect reports and the energy balance, but
     // no later step.
@@ -49,8 +49,8 @@ struct SpringTable {
     Column<Real> tension, elastic;
     Column<Real> rest_rate;                      // rate of change of the rest length [m/s]
     Column<AnchorMass> first_mass, second_mass;  // inverse masses of both anchors, derived by weigh_springs
-    // For an anchor on an implicit body: change of its velocity per unit impulse on it, due to the deformation of the
-    // body in this step [1/kg]. Zero for other anchors. Written by respond_at_anchors.
+    // For an anchor on an implicit body: velocity of the anchor per unit impulse on the anchor, as far as it is due to
+    // the deformation of the body in this step [1/kg]. Zero for other anchors. Written by respond_at_anchors.
     Column<Mat3> first_response, second_response;
     Column<SpringForce> next;  // forces in the present step, written by add_spring_forces
     Column<TimeKey> key;       // rest lengths of all springs [m]

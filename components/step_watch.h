@@ -14,36 +14,36 @@ namespace skerry {
 
 /// Progress of the stable-step check of one body, and the results so far.
 struct StepEvaluation {
-    std::uint64_t piece = 0;   // number of pieces done (pieces_of_check)
+    std::uint64_t piece = 0;   // number of pieces of the check that are done (pieces_of_check)
     Index broken = no_index;   // first element whose frequency bound is not finite
     Real highest = 0;          // greatest bound of the squared frequency omega^2 of an element so far [1/s^2]
     Index element = no_index;  // element with the bound `highest`; valid if `highest` is above zero
     // Value of `highest` (for bounds with frame masses: of `in_frame`) when the check of the current group of blocks
-    // began [1/s^2]. The blocks of a group are checked in parallel and compared with this value only, so the result
+    // began [1/s^2]. The blocks of a group are checked in parallel and compared with this value only. The result thus
     // does not depend on the order of the threads.
     Real known = 0;
     // For a body with frame masses (frame_masses.h): `deformation` is the sum of V F over its elements with volume V
-    // and deformation gradient F, column by column [m^3]. `in_frame` is the bound of omega^2 that follows from the
-    // frame masses [1/s^2].
+    // and deformation gradient F, column by column [m^3]. `in_frame` is the upper bound of omega^2 that follows from
+    // the frame masses [1/s^2].
     std::array<Real, 9> deformation{};
     Real in_frame = 0;
     Index element_in_frame = no_index;
 };
 
 /// Checks all bodies one after the other, in endless rounds. The progress is part of the state. Only `steps` is hashed,
-/// because attempts at a step that are then rejected also advance the other members. This changes no result.
+/// because rejected attempts at a step also advance the other members. How far they are advanced changes no result.
 struct StepWatch {
-    /// Value of `step` for a body that is not checked in this round, because it is asleep or unstrained (its shape does
-    /// not change), because another rank checks it, or because forget() was called.
+    /// Value of `step` for a body that is not checked in this round. Possible reasons: its shape does not change (it is
+    /// asleep or unstrained), another rank checks it, or forget() was called.
     static constexpr Real not_evaluated = -1;
 
     std::uint64_t steps = 0;  // number of steps since the current round began
     // True in every second round. The balance of energy is checked at the end of such a round.
     bool second = false;
     Index body = 0;             // row of BodyTable whose check is in progress
-    Index kept = 0;             // store_shapes has stored the shapes of all bodies below this row in this round
+    Index kept = 0;             // first row of BodyTable whose shape store_shapes has not stored in this round
     StepEvaluation evaluation;  // progress of the check of `body`
-    std::uint64_t before = 0;   // number of pieces of all bodies in rows below `body`
+    std::uint64_t before = 0;   // number of pieces of all bodies with lower rows than `body`
     std::uint64_t target = 0;   // number of pieces, of all bodies, that must be done when the next step ends
 
     Column<Vec3> position;       // by node: its position in the stored shape that is checked [m]

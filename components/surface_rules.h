@@ -20,7 +20,8 @@ namespace skerry {
 /// One row per pair of materials with its own surface properties. Rows are sorted by ascending (first, second).
 struct MaterialPairTable {
     Column<Index> first, second;  // rows of MaterialTable, first <= second
-    // properties of contacts between the two materials; for a negative property, mean_surface() applies
+    // properties of contacts between the two materials; a negative property is replaced by the mean of both surfaces
+    // (mean_surface())
     Column<SurfaceProperties> surface;
 
     std::size_t size() const { return first.size(); }

@@ -14,7 +14,7 @@ using TieHandle = Handle<struct TieTag>;  // refers to a tie of a world
 enum class TieKind : std::uint8_t {
     weld,   // no motion
     slide,  // motion in the tangent plane of the surface at the point
-    // any motion, as long as the common centre of mass of all nodes of the tie stays at one point of the other object
+    // any motion that keeps the common centre of mass of all tied nodes at one point of the other object
     ball,
 };
 template <>

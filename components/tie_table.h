@@ -35,8 +35,8 @@ struct TieTable {
     Column<std::array<Index, 3>> corner;
     Column<Vec3> weight;
     // Position of the node relative to the other object [m]. On a deformable body: relative to the point on the
-    // triangle, in the frame of the triangle (explicit body) or in the frame of the mesh (implicit body). Otherwise: in
-    // the frame of the mesh of the rigid body, in the frame of the collider, or in the world.
+    // triangle, in the frame of the triangle (explicit body) or of the mesh (implicit body). On other objects: in the
+    // frame of the mesh (rigid body), of the collider, or of the world.
     Column<Vec3> place;
     // Unit normal of the other object, in the frame of `place`. If the other object deforms, the normal of the triangle
     // is used instead.

@@ -1,5 +1,5 @@
-// Number and vector types of the engine. cmake/install.cmake lists this and the other headers of components/ that are
-// installed with the library.
+// Number and vector types of the engine. This header is installed with the library; cmake/install.cmake lists all such
+// headers of components/.
 #pragma once
 
 #include <Eigen/Core>

@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// Kinds of access. value: the object is read, and no stage ever writes it, so that the access causes no dependency.
+/// Kinds of access of a stage to an object. `value`: the stage reads an object that no stage ever writes, so that the
+/// access causes no dependency between stages.
 enum class Use : std::uint8_t { value, read, write };
 
 /// Access to one object, such as a column, a table or a number. An object is identified by its address range. An access
@@ -32,8 +33,8 @@ struct Access {
 };
 using AccessList = std::vector<Access>;
 
-/// True for spans, views and pointers. They are no Resource: a declared access would cover the address range of the
-/// span object instead of the data to which it refers.
+/// True for spans, views and pointers. They are not accepted as a Resource (below): the declared access would cover the
+/// address range of the span itself, not the data to which it refers.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>
@@ -57,7 +58,7 @@ concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>
 ///
 /// When a stage is added to the graph, bind runs with an access list and so declares the accesses of the stage. When
 /// the stage starts, bind runs without a list. The function bind must therefore request the same columns in both calls,
-/// whatever the columns contain: it must use read_if and write_if instead of `if`. It must not allocate memory.
+/// whatever the columns contain: it must use read_if and write_if instead of `if`. bind must not allocate memory.
 class Binder {
 public:
     Binder() = default;

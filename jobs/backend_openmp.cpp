@@ -40,8 +40,8 @@ public:
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
-            // The complete team is used even for fewer blocks: for a smaller team the runtime would end the surplus
-            // threads and create them again for the next call.
+            // The complete team is used even if there are fewer blocks than workers. For a smaller team the OpenMP
+            // runtime would end the surplus threads and create them again for the next call.
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);

@@ -1,5 +1,5 @@
-// Serial backend: only the calling thread works. Tests compare the results of the other backends with it. Steps of
-// scenes that are too small for threads run on it.
+// Serial backend: only the calling thread works. Tests compare the results of the other backends with those of the
+// serial backend. Scenes that are too small for threads also use it.
 #include "jobs/backends.h"
 
 namespace skerry {

@@ -33,8 +33,9 @@ public:
         if (workers <= 1) {
             job.drain(0);
         } else {
-            // The loop is isolated: a worker that waits for the last block must not start a long stage meanwhile. Such
-            // a stage would delay all work that waits for these blocks, and its time would count as time of this stage.
+            // The loop is isolated: a worker that waits for the last block must not start another stage meanwhile. A
+            // long stage would delay all work that waits for these blocks, and its time would count as time of the
+            // stage that called run_blocks.
             in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
         }
         job.rethrow();
@@ -89,7 +90,7 @@ private:
     };
 
     // oneTBB runs more workers than cores only if the limit on the number of threads is raised. oneTBB applies the
-    // smallest limit that anyone has requested. So this request never raises a limit that the host program has set.
+    // smallest of all requested limits. So this request never raises a limit that the host program has set.
     std::optional<tbb::global_control> more_threads_;
     std::optional<tbb::task_arena> arena_;  // empty: tasks run in the arena of the caller
     PredecessorCounts left_;

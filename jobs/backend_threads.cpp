@@ -1,4 +1,5 @@
-// Thread backend that uses no library, so that the thread sanitizer can see all of its code.
+// Backend of threads of the C++ standard library. It uses no other library, so that the thread sanitizer sees all of
+// its code.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -15,8 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Time for which an idle worker spins before it sleeps. A step has a dozen stages in 100 us. A worker that fell asleep
-// between two stages would wake up too late for the second stage.
+// Time for which an idle worker spins before it sleeps. A short step has a dozen stages in 100 us. A worker that fell
+// asleep between two stages would wake up too late for the second stage.
 constexpr std::chrono::microseconds spin_time{50};
 
 // Index of this thread among the workers of its executor. Threads that the executor did not start, such as its caller,
@@ -38,8 +39,8 @@ bool spin_until(bool may_spin, auto&& ready) {
 }
 
 /// An executor that consists of workers - 1 threads and the calling thread. One mutex guards the list of unfinished
-/// run_blocks calls and the list of stages that are ready. Each call has an atomic counter of blocks, from which
-/// workers take blocks without the mutex.
+/// run_blocks calls and the list of stages that are ready. Workers take the blocks of a call from atomic counters,
+/// without the mutex.
 class ThreadsExecutor final : public Executor {
 public:
     explicit ThreadsExecutor(int workers)
@@ -138,8 +139,8 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // The flag is copied before `helpers` is reduced: if the thread that called run_blocks does not sleep, it
-            // may return and destroy *open as soon as `helpers` is zero.
+            // The flag is copied before `helpers` is reduced. As soon as `helpers` is zero, the thread that called
+            // run_blocks may return and destroy *open, if it does not sleep.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;
@@ -215,14 +216,14 @@ private:
     }
 
     const int workers_;
-    // False if there are more workers than cores: a spinning worker would take a core from a working one.
+    // False if there are more workers than cores, because a spinning worker would then take a core from a working one.
     const bool may_spin_;
     PredecessorCounts left_;
 
     std::mutex mutex_;
     std::condition_variable work_announced_, helpers_left_;
-    // Count of announcements: of new work, of the end of a graph and of the stop. Changed under mutex_; spinning
-    // threads read it without locking the mutex.
+    // Number of announcements so far: of new work, of the end of a graph, and of the end of the executor. It is changed
+    // under mutex_; spinning threads read it without locking the mutex.
     std::atomic<std::uint64_t> announced_{0};
     std::atomic<int> sleepers_{0};  // changed under mutex_; wake() reads it without locking the mutex
     OpenJob* open_ = nullptr;

@@ -47,9 +47,9 @@ private:
 
 /// The blocks of one run_blocks call, divided into one contiguous share per worker. A worker begins with its own share,
 /// because it wrote the data of this share in the previous loop and may still have them in its caches. Then it runs
-/// blocks of the following shares. A counter per share hands out the blocks to any worker. A call therefore needs only
-/// one task per worker instead of one per block, and a slow block delays no other block. After an exception the other
-/// blocks still run, so that the lowest failing block does not depend on timing.
+/// blocks of the following shares. Each share has a counter, from which any worker takes the next block. A call
+/// therefore needs only one task per worker instead of one per block, and a slow block delays no other block. After an
+/// exception the other blocks still run, so that the lowest failing block does not depend on timing.
 class BlockJob {
 public:
     BlockJob(Index count, FunctionRef<void(Index)> body, int workers)
@@ -63,7 +63,8 @@ public:
     /// Runs blocks until none is left. `worker`: number of the calling thread among the workers of the executor.
     void drain(int worker) noexcept {
         const ArithmeticScope arithmetic;
-        // The access check is per thread. So each worker takes over the check of the stage that called run_blocks.
+        // Each thread has its own access check. So each worker first takes over the check of the stage that called
+        // run_blocks.
         const AccessScope access(watch_);
         for (int i = 0; i < shares_; ++i) {
             const int share = (worker + i) % shares_;

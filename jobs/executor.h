@@ -13,15 +13,15 @@ namespace skerry {
 
 /// Dependencies between stages. Stages are numbered so that every edge goes from a lower to a higher number.
 struct GraphEdges {
-    // Index in `successor` of the first successor of each stage, and the end: stage count + 1 entries.
+    // Index in `successor` of the first successor of each stage. A last entry contains the size of `successor`.
     std::span<const Index> successor_offset;
     std::span<const Index> successor;
     std::span<const Index> predecessor_count;  // number of predecessors of each stage
 };
 
 /// A set of workers; the calling thread is one of them. Results never depend on the number of workers, because work is
-/// divided into fixed blocks. run_blocks and run_graph rethrow an exception thrown by a block or stage. If several
-/// blocks or stages throw, the exception of the lowest number is rethrown. After an exception, no further stage of the
+/// divided into fixed blocks. If a block or stage throws, run_blocks or run_graph rethrows the exception. If several
+/// throw, the exception of the lowest block or stage number is rethrown. After an exception, no further stage of the
 /// graph starts.
 class Executor {
 public:

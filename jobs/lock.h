@@ -1,4 +1,4 @@
-// Lock for data that are computed at their first use, outside of time steps, by whichever thread needs them first.
+// Lock for data that are computed only when a thread first needs them, outside of time steps.
 #pragma once
 
 #include <mutex>

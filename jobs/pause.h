@@ -5,7 +5,8 @@
 
 namespace skerry {
 
-/// Lets the other hardware thread of the core run for some cycles. On processors other than x86-64 it yields the core.
+/// Waits for some cycles, in which the other hardware thread of the core can use it alone. On processors other than
+/// x86-64 the function yields the core to other threads.
 inline void pause_briefly() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();

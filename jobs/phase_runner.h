@@ -1,4 +1,4 @@
-// PhaseRunner: interface of an executor that also takes over the phases of a Team.
+// PhaseRunner: interface of an executor that also runs the phases of a Team.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace skerry {
 
 /// Additional base class of an executor that runs the phases of a Team itself. Profiling uses such an executor to
-/// record the blocks one by one. A Team that gathers on such an executor uses no other workers.
+/// record the blocks one by one. If Team::gather() gets such an executor, the Team uses no workers of its own.
 class PhaseRunner {
 public:
     virtual ~PhaseRunner() = default;

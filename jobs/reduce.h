@@ -9,8 +9,8 @@
 namespace skerry {
 
 /// Calls block_result(begin, end) for blocks of at most `block` rows, concurrently, and combines the results r_0, r_1,
-/// ... in block order: combine(... combine(combine(identity, r_0), r_1) ...). The order is fixed, because
-/// floating-point addition depends on the order. `partial` stores the results of the blocks; its memory is reused by
+/// ... in block order: combine(... combine(combine(identity, r_0), r_1) ...). The order is fixed, because the rounding
+/// of a floating-point sum depends on the order. `partial` stores the results of the blocks; its memory is reused by
 /// later calls.
 template <class T, class BlockResult, class Combine>
 T reduce(Executor& executor, std::size_t count, std::size_t block, Column<T>& partial,

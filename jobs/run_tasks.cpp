@@ -18,9 +18,8 @@ public:
 
     /// Runs tasks until none is left.
     void drain() noexcept {
-        // Numbers are taken in ascending order, and a task whose number was taken always runs. So before a task can
-        // fail, all tasks with lower numbers have been taken and also run. The lowest failing number therefore does not
-        // depend on timing.
+        // Numbers are taken in ascending order, and a task whose number was taken always runs. So if a task fails, all
+        // tasks with lower numbers run as well. The lowest failing number therefore does not depend on timing.
         while (!closed_) {
             const Index number = next_++;
             if (number >= count_) break;

@@ -11,9 +11,9 @@ namespace skerry {
 /// Number of cores that this process may use, at least 1.
 int core_count();
 
-/// Calls task(0) .. task(count - 1), each once, on new threads: `threads` of them, but at most `count`. Tasks start in
-/// the order of their numbers. The calling thread runs no task. It calls watch() once per `period` until all tasks have
-/// returned, so that watch() may call code that only this thread may run.
+/// Calls task(0) .. task(count - 1), each once, on new threads. Their number is the lesser of `threads` and `count`,
+/// but at least 1. Tasks start in the order of their numbers. The calling thread runs no task. It calls watch() once
+/// per `period` until all tasks have returned. So watch() may call code that only the calling thread may run.
 ///
 /// After an exception of a task or of watch() no further task starts, but running tasks are completed. Then the
 /// exception of watch() is rethrown, or else that of the task with the lowest number.

@@ -29,8 +29,9 @@ struct Bind {
     X operator()(const Binder& binder, auto&... objects) const { return X::bind(binder, objects...); }
 };
 
-// Stage argument: the functor `Take` converts the objects to the value that is passed to the stage function. The
-// accesses are declared when the stage is added to the graph. The value is computed again whenever the stage starts.
+// Stage argument: the functor `Take` converts the objects to the value that is passed to the stage function. When the
+// stage is added to the graph, `Take` declares the accesses. Whenever the stage starts, `Take` computes the value
+// again.
 template <class Take, class... Objects>
 struct Argument {
     using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;
@@ -76,7 +77,8 @@ AccessList joined(const auto&... args) {
 
 }  // namespace access_detail
 
-/// Passes a span<const T> for a column, a RaggedView<T> for a Ragged, and a const T& for any other object.
+/// Passes to the stage function a span<const T> for a column, a RaggedView<T> for a Ragged, and a const T& for any
+/// other object.
 template <Resource T>
 auto read(const T& object) {
     return access_detail::Argument<access_detail::Read, const T>{{&object}};
@@ -84,7 +86,7 @@ auto read(const T& object) {
 template <Resource T>
 void read(const T&&) = delete;  // deleted, because a temporary object no longer exists when the stage runs
 
-/// Passes a span<T> for a column.
+/// Passes a span<T> for a column that the stage writes.
 template <class T>
 auto write(Column<T>& column) {
     return access_detail::Argument<access_detail::Write, Column<T>>{{&column}};
@@ -105,8 +107,8 @@ auto value(const T& object) {
 template <Resource T>
 void value(const T&&) = delete;
 
-/// Passes X::bind(binder, objects...). X is a struct of inputs; bind declares the members of the objects (mostly
-/// tables) that X reads.
+/// Passes X::bind(binder, objects...). X is a struct of inputs. Its function bind declares which members of the objects
+/// (mostly columns of tables) X reads.
 template <class X, Resource... T>
 auto inputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, const T...>{{&objects...}};

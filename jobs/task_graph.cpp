@@ -16,8 +16,8 @@ bool conflict(const AccessList& a, const AccessList& b) {
     });
 }
 
-/// True if a stage with the accesses `written` writes an object that a stage with the accesses `taken` declares as a
-/// value.
+/// True if the accesses `written` of one stage write an object that another stage, with the accesses `taken`, declares
+/// as a value.
 bool breaks_value(const AccessList& written, const AccessList& taken) {
     return std::ranges::any_of(written, [&](const Access& access) {
         return access.writes() && std::ranges::any_of(taken, [&](const Access& other) {
@@ -74,9 +74,9 @@ void TaskGraph::compile() {
                 throw CheckFailed(std::string("the stage ") + reader.name +
                                   " reads as a constant value the data that the stage " + writer.name + " writes");
     edges_.clear();
-    // before[s][p]: stage s waits for stage p, directly or through other stages. For each stage, the nearest
-    // predecessors are visited first. A predecessor for which another predecessor already waits needs no edge of its
-    // own, so the set of edges is minimal.
+    // before[s][p]: stage s waits for stage p, directly or through other stages. For each stage s, the last of its
+    // predecessors is visited first. A stage p for which another predecessor of s already waits gets no edge to s, so
+    // the set of edges is minimal.
     std::vector<std::vector<bool>> before(count, std::vector<bool>(count, false));
     for (std::size_t s = 0; s < count; ++s) {
         for (std::size_t p = s; p-- > 0;) {
@@ -116,8 +116,8 @@ void TaskGraph::run_all(Executor& executor, Trace* trace) {
         executor.run_graph(edges, [&](Index number) { run_stage(number, Trace::now(), executor, trace); });
         return;
     }
-    // The stages run one after the other, so the end time of a stage is also the start time of the next stage. This
-    // halves the number of clock reads, whose time matters in a step of a few microseconds.
+    // The stages run one after the other, so the end time of a stage is also the start time of the next stage. The
+    // clock is thus read only once per stage. Its reading time matters in a step of a few microseconds.
     Trace::Time time = Trace::now();
     executor.run_graph(edges, [&](Index number) { time = run_stage(number, time, executor, trace); });
 }

@@ -20,8 +20,8 @@ namespace skerry {
 
 namespace access_detail {
 
-// Calls a stage function with the values that the stage arguments pass, preceded by the executor if the function takes
-// one.
+// Calls a stage function with the values that the stage arguments pass. The executor is the first argument if the
+// function takes one.
 template <class F, class Passed>
 struct StageCall;
 
@@ -63,7 +63,7 @@ struct StageStats {
     const char* name;
     double seconds = 0;  // time from start to end on the thread of the stage, summed over all runs [s]
     std::uint64_t runs = 0;
-    std::uint64_t skipped = 0;  // how often the guard of the stage was false or the stage returned false
+    std::uint64_t skipped = 0;  // how often the guard (only_if) of the stage was false or the stage returned false
 };
 
 /// Name, accesses and phase of a stage.
@@ -95,7 +95,7 @@ public:
     TaskGraph();
 
     /// Begins a phase: stages that are added from now on belong to this phase. Phases group the stages in the drawing
-    /// and have no effect on the order of stages. `name` must be a string literal.
+    /// of the graph (to_dot) and have no effect on the order of stages. `name` must be a string literal.
     void begin_phase(const char* name) { phase_ = name; }
     /// Adds a stage. `name` must be a string literal, or exist as long as the graph and any trace of it. A stage
     /// function may return bool; false means that the stage had nothing to do.
@@ -152,7 +152,7 @@ public:
     std::span<const StageStats> stats() const { return stats_; }
     void reset_stats();
 
-    /// The smallest set of edges that implies all dependencies, sorted by Edge::from, then by Edge::to. Stages are
+    /// The smallest set of edges from which all dependencies follow, sorted by Edge::from, then by Edge::to. Stages are
     /// numbered in list order.
     std::span<const Edge> edges() const { return edges_; }
     /// The graph as text in the dot language of Graphviz, with a box around the stages of each phase.
@@ -169,7 +169,7 @@ private:
     class StageWatch;
 
     void add(StageDeclaration stage, Run run);
-    /// Runs a stage. Returns the end time of the stage, or `begin` if the guard of the stage was false.
+    /// Runs a stage. Returns the end time of the stage, or `begin` if the guard (only_if) of the stage was false.
     Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 

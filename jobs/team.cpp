@@ -15,9 +15,9 @@ namespace skerry {
 /// Then it yields the core, because the operating system may have suspended them.
 template <class Ready>
 void Team::wait_until(Ready&& ready) const {
-    // Number of pauses before the thread yields; 50,000 pauses take 2 ms. A yield gives up the core for a time slice of
-    // about this length, which is too long for a wait of a microsecond. If there are more workers than cores, the
-    // thread yields early, because the thread for which it waits may need the core.
+    // Number of pauses before the thread yields; 50,000 pauses take 2 ms. A yield also gives up the core for about 2
+    // ms, too long if the wait would take a microsecond. If there are more workers than cores, the thread yields early,
+    // because the thread for which it waits may need the core.
     const int max_pauses = may_spin_ ? 50000 : 20;
     for (int i = 0; !ready(); ++i) {
         if (i < max_pauses) {
@@ -50,8 +50,8 @@ void Team::gather(Executor& executor, FunctionRef<void()> work) {
     together_ = true;
     std::atomic<bool> has_leader{false};
     executor.run_blocks(workers, [&](Index) {
-        // The first thread that arrives becomes the leader. The thread of a fixed block could not lead, because an
-        // executor may run this block late.
+        // The first thread that arrives becomes the leader. The thread of a fixed block, for example of block 0, could
+        // not lead, because an executor may run this block late.
         if (has_leader.exchange(true)) {
             help();
             return;
@@ -140,8 +140,9 @@ void Team::take_part(const Job& job, Index member) {
         const Index own_end =
             begin + static_cast<Index>(std::int64_t{count} * (member % job.members + 1) / job.members);
         take_blocks(job, begin + share, own_end);
-        // Usually the other workers are about to finish. Reading their claims would move the cache lines away from
-        // them. This worker therefore waits a little, and then helps only workers that are late.
+        // Usually the other workers are about to finish. Reading the claims of their blocks would move the cache lines
+        // of the claims away from them. This worker therefore waits a little, and then helps only workers that are
+        // late.
         constexpr int short_pauses = 40;  // number of pauses, 2 us in total
         for (int i = 0; i < short_pauses && done_.load(std::memory_order_acquire) < end; ++i) pause_briefly();
         if (done_.load(std::memory_order_acquire) >= end) continue;

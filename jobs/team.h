@@ -16,15 +16,14 @@ namespace skerry {
 class FirstError;
 class PhaseRunner;
 
-/// One thread, the leader, hands out work; the other threads, the helpers, spin until there is work. No helper is
-/// indispensable: if a worker is busy elsewhere or suspended by the operating system, the other workers do its share. A
-/// phase has an overhead of about 0.3 us. The time for a worker to join the team depends on the executor and is spent
-/// once per gather(). Later calls reuse the memory of the Team object.
+/// One thread, the leader, hands out work; the other threads, the helpers, spin until there is work. If a helper is
+/// busy elsewhere or suspended by the operating system, the other threads do its share. A phase has an overhead of
+/// about 0.3 us. The time for a worker to join the team depends on the executor and is spent once per gather(). Later
+/// calls reuse the memory of the Team object.
 class Team {
 public:
-    /// Largest number of threads in a team, leader included. All threads count finished blocks on one cache line, so
-    /// each phase takes longer in a larger team. The other workers of the executor stay free for other stages and
-    /// regions.
+    /// Largest number of threads in a team, leader included. All threads increment the same counter of finished blocks,
+    /// so each phase takes longer in a larger team. The other workers of the executor stay free for other work.
     static constexpr int most_members = 8;
 
     /// Calls work() once. Calls of run_phases inside work() may use up to most_members workers of the executor. If the
@@ -32,10 +31,10 @@ public:
     void gather(Executor& executor, FunctionRef<void()> work);
 
     /// Calls body(block) once for each block. Phase p consists of the blocks phase_offset[p] .. phase_offset[p + 1] -
-    /// 1; it starts after all blocks of earlier phases have returned. A worker prefers the same share of the blocks in
-    /// every phase, so that its cache keeps the data if equal shares of all phases use about the same rows. After an
-    /// exception the other blocks still run, and the exception of the lowest block is rethrown. Call run_phases only
-    /// from the leading thread. Outside of gather() all blocks run on the calling thread.
+    /// 1; it starts after all blocks of earlier phases have returned. A worker begins each phase with the same share of
+    /// the blocks. If this share uses about the same rows in all phases, the rows stay in the cache of the worker.
+    /// After an exception the other blocks still run, and the exception of the lowest block is rethrown. Call
+    /// run_phases only from the leading thread. Outside of gather() all blocks run on the calling thread.
     void run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index block)> body);
 
     /// Runs a single phase of `count` blocks.
@@ -59,7 +58,7 @@ private:
 
     static constexpr std::size_t line = 64;  // cache line [bytes]
 
-    // The leader replaces job_ and the array claim_ only while inside_ is 0, when no helper reads them.
+    // The leader replaces job_ and the array claim_ only while inside_ is 0: no helper can then read them.
     Job job_;
     // For each block: number of the last job in which a thread claimed the block.
     std::unique_ptr<std::atomic<std::uint64_t>[]> claim_;

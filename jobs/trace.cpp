@@ -65,7 +65,7 @@ Trace::Worker& Trace::worker_of_this_thread() {
     thread_local Worker* known = nullptr;
     if (known_id == id_) return *known;
 
-    // Either this thread has recorded no zone in this trace yet, or it has recorded in another trace meanwhile.
+    // This thread has recorded no zone in this trace yet, or it has recorded one in another trace since then.
     std::lock_guard lock(mutex_);
     known = nullptr;
     for (const auto& worker : workers_)

@@ -13,7 +13,7 @@
 namespace skerry {
 
 /// Records zones: named time intervals of work. Every thread writes to its own list, which grows up to the given
-/// maximum. Further zones are only counted; write_json() writes their number.
+/// maximum. Further zones are dropped; write_json() writes their number.
 class Trace {
 public:
     using Clock = std::chrono::steady_clock;
@@ -38,7 +38,7 @@ public:
 
     std::size_t zone_count() const;
     std::uint64_t dropped_count() const;
-    // Number of threads that recorded a zone, plus the thread that made the trace if it recorded none.
+    // Number of threads with a list of zones: those that have recorded a zone, and the thread that made the trace.
     int worker_count() const;
 
     /// Writes a file in the Trace Event Format: one complete event ("X") for each zone, with times in microseconds.
@@ -58,8 +58,8 @@ private:
 
     Worker& worker_of_this_thread();
 
-    // Number of this trace, never reused. A thread stores it with a pointer to its list, and so detects that the
-    // pointer belongs to another trace.
+    // Number of this trace, never reused. A thread stores the number together with a pointer to its list of zones. By
+    // the number it detects that the pointer belongs to another trace.
     std::uint64_t id_;
     std::size_t max_zones_per_worker_;
     Time start_;

@@ -1,5 +1,5 @@
-// Replacement for engine/live if SKERRY_LIVE=OFF. The constructor throws SceneError, so the other functions are never
-// called on an open view.
+// Replacement for engine/live if SKERRY_LIVE=OFF. The constructor throws SceneError, so there is never a LiveView whose
+// other functions could be called.
 #include "skerry/live.h"
 #include "engine/absent/refuse_absent.h"
 

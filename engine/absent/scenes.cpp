@@ -1,4 +1,4 @@
-// Replacement for engine/scene if SKERRY_SCENES=OFF.
+// Replacement for engine/scene and engine/study if SKERRY_SCENES=OFF. All functions throw SceneError.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/scene.h"
 #include "skerry/study.h"

@@ -129,7 +129,7 @@ std::string nearest_name(std::string_view text, std::span<const std::string> nam
 
 std::string nearest_hint(std::string_view text, std::span<const std::string> names) {
     const std::string nearest = nearest_name(text, names);
-    // A name is suggested if at most one letter differs, or one letter in every `letters_per_slip`. With more
+    // A name is suggested if at most one letter differs, or at most one in three letters (letters_per_slip). With more
     // differences the text is probably another word, not a typing mistake.
     constexpr std::size_t letters_per_slip = 3;
     const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);

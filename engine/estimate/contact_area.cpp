@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-// Limit of the angle between the normal of a node and that of a face at this node. Above it the node lies on an edge or
-// corner of the body [rad]. At an edge of a box it is pi/4. At nodes of a coarse ball it is about half of the angle
-// between neighbouring faces.
+// Upper limit of the angle between the normal of a node and that of a face at this node [rad]. With a larger angle the
+// node lies on an edge or corner of the body. At an edge of a box the angle is pi/4. At nodes of a coarse ball it is
+// about half of the angle between neighbouring faces.
 constexpr Real sharp = 0.7;
 // A contact counts as flat if the sum of both curvatures times the mean edge length is below this value.
 constexpr Real flat = 1e-3;
@@ -34,8 +34,8 @@ Real compliance_of(const World& world, BodyHandle body) {
     return (1 - material.poisson_ratio * material.poisson_ratio) / material.young_modulus;
 }
 
-/// Mean of a quantity, given by node of the body, at one side of a contact. The weights of the contact point are
-/// positive for the nodes of the first side.
+/// Mean of a quantity over the nodes of one side of a contact, weighted by the weights of the contact point. `of_node`:
+/// values by node of the body. Weights are positive for the nodes of the first side.
 Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_node) {
     Real sum = 0;
     for (std::size_t k = 0; k < contact.node.size(); ++k)

@@ -8,8 +8,9 @@
 
 namespace skerry {
 
-/// For each body: the relative solver error e_nat of its contact regions (docs/methods/errors.md 2), averaged with the
-/// impulses as weights, and the largest overlap and gap of its contacts.
+/// For each body: the relative solver error e_nat of its contact regions (docs/methods/errors.md 2), and the largest
+/// overlap and gap of its contacts. The solver error is a mean over the contacts of the body, weighted by their
+/// impulses.
 class ContactError {
 public:
     /// Takes a sample from the contacts of the last step.

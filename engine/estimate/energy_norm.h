@@ -15,7 +15,7 @@ using StressCoordinates = Eigen::Matrix<Real, 7, 1>;
 /// Computes the coordinates of stresses in one material.
 class EnergyNorm {
 public:
-    /// `splits`: true if some elements have only one part of the stress (ElementPart).
+    /// `splits`: true if some elements exert only one part of the stress (ElementPart).
     EnergyNorm(const MaterialConstants& material, bool splits);
 
     /// Coordinates of a stress that belongs to `part` of the material law. `turn`: rotation of the material axes, used
@@ -24,8 +24,9 @@ public:
 
 private:
     bool is_anisotropic_;
-    // Square roots of the compliances of the deviatoric and of the volumetric part [Pa^(-1/2)]. `pressure_`: pressure
-    // of the volumetric part of a whole stress, divided by the trace of the stress.
+    // `of_shear_`, `of_volume_`: square roots of the compliances of the deviatoric and of the volumetric part of a
+    // stress [Pa^(-1/2)]. `pressure_`: pressure of the volumetric part of a complete stress, divided by the trace of
+    // the stress.
     Real of_shear_ = 0, of_volume_ = 0, pressure_ = 0;
     // Inverse of the Cholesky factor of the stiffness of an anisotropic material, for the entries xx, yy, zz, xy, yz,
     // zx.

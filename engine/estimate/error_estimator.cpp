@@ -18,8 +18,9 @@ namespace {
 /// Errors of the meshes of all bodies, each at the sample with the largest elastic energy of the body.
 class MeshErrors {
 public:
-    /// Takes a sample of the bodies with the most elastic energy, at least of one. `fraction`: fraction of all
-    /// tetrahedra that are sampled. `last`: also samples sleeping bodies that were not sampled before.
+    /// Takes a sample of the bodies with the most elastic energy, at least of one. `fraction`: upper limit of the
+    /// number of sampled tetrahedra, as a fraction of all tetrahedra. `last`: also samples sleeping bodies that were
+    /// not sampled before.
     void sample(const World& world, Real fraction, bool last) {
         const Model& model = WorldAccess::state_of(world).model;
         struct Strained {
@@ -81,10 +82,11 @@ private:
     std::map<BodyHandle, Found> found_;
 };
 
-/// Intervals between samples. The unit is one step in which something moved. All samples together take less than 2 % of
+/// Intervals between samples, as numbers of steps in which something moved. All samples together take less than 2 % of
 /// the computing time of the steps.
 struct Pace {
-    // number of steps before the first sample of all meshes, which takes 0.6 % of the computing time of these steps
+    // number of steps before the first sample of all meshes; the sample takes 0.6 % of the computing time of these
+    // steps
     std::uint64_t first_mesh;
     std::uint64_t mesh;    // number of steps between samples of meshes
     std::uint64_t motion;  // number of steps between samples of motion and contacts
@@ -92,7 +94,7 @@ struct Pace {
 Pace pace_of(const World& world) {
     constexpr Pace explicit_pace{8000, 2000, 200}, implicit_pace{250, 100, 20};
     const Model& model = WorldAccess::state_of(world).model;
-    // Worlds without explicit bodies take few, long steps.
+    // Worlds without explicit bodies take few, long steps, so they are sampled after fewer steps.
     return model.all_blocks().size() == 0 ? implicit_pace : explicit_pace;
 }
 

@@ -12,7 +12,7 @@ namespace skerry {
 /// integrals of stress : strain, twice the elastic energy, with the strain that Hooke's law gives for the stress.
 struct MeshError {
     std::vector<Real> volume;  // volumes of the tetrahedra at rest [m^3]
-    // Energies of the stress of each tetrahedron, and of its difference from the recovered stress [J].
+    // For each tetrahedron: energy of its stress, and of the difference between this and the recovered stress [J].
     std::vector<Real> energy, error;
     Real stored = 0;  // energy of the elements [J]
     // Additional energy that the body would store under the same loads, if its mesh were infinitely fine [J].
@@ -22,17 +22,18 @@ struct MeshError {
     // Largest von Mises stress at the nodes [Pa], and its relative error.
     Real largest_stress = 0, stress = 0;
     NodeFields nodes;            // recovered fields, in world axes
-    std::vector<Real> of_nodes;  // mean of relative_errors() over the tetrahedra around each node
+    std::vector<Real> of_nodes;  // by node: mean of relative_errors() over the tetrahedra around it
 
     /// Relative error of the stress of the tetrahedra, in the energy norm.
     Real mesh() const;
     /// Relative error of a displacement under given loads, positive if the mesh is too stiff.
     Real deflection() const;
-    /// Results of mesh_error().
+    /// Results of mesh_error(): sqrt(e / E) for each tetrahedron, with the energy e of its stress error per volume, and
+    /// the energy E of the stress and the stress error of the whole body per volume.
     std::vector<Real> relative_errors() const;
 };
 
-/// All errors are zero if the body is rigid or not deformed.
+/// Compares the stress of a body with the recovered stress. All errors are zero if the body is rigid or not deformed.
 MeshError measure_mesh_error(const World& world, BodyHandle body);
 
 }  // namespace skerry

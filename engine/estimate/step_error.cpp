@@ -102,9 +102,9 @@ Vec3 spin_momentum(const World& world, BodyHandle body) {
     return model.rigid_bodies.angular_momentum[static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin)];
 }
 
-/// Rate of the error of the rotation of a free rigid body [rad/s]: the size of the second-order terms of the splitting
-/// into rotations about the principal axes (docs/methods/rigid_bodies.md), h^2/24 |w| |dw/dt| with the angular velocity
-/// w, which changes without torques.
+/// Rate of the error of the rotation of a free rigid body [rad/s]. It is the size of the second-order terms of the
+/// splitting into rotations about the principal axes (docs/methods/rigid_bodies.md): h^2/24 |w| |dw/dt| with the step h
+/// and the angular velocity w, which changes even without torques.
 Real tumbling_error(const World& world, BodyHandle body, Real step) {
     const Model& model = model_of(world);
     const auto r = static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin);
@@ -200,8 +200,8 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
                  : (now.angular_velocity - start.angular_velocity).norm();
     const Real change = std::hypot((now.velocity - start.velocity).norm(), radius * turned);
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
-    // The limit `accelerated` assumes the initial acceleration throughout. So sudden later changes, as in collisions,
-    // do not count in full.
+    // `accelerated`, an upper limit of the change, assumes the initial acceleration throughout. So sudden later
+    // changes, as in collisions, do not count in full.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
@@ -210,7 +210,8 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     if (interval.collided.contains(body))
         motion.deflection_rate += velocity_change.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
     // Restitution reverses the velocity at the end of a step instead of at the time of impact, on average half a step
-    // late. Each rebound adds this delay times the change of the velocity without the part of gravity.
+    // late. Each rebound adds a position error: this delay times the change of the velocity, without the change by
+    // gravity.
     if (interval.rebounds) {
         const Real rebound = (velocity_change - interval.seconds * world.settings().gravity).norm();
         motion.deflected += std::min(velocity_change.norm(), rebound) * interval.step / 2;
@@ -239,8 +240,9 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     if (!implicit) {
         return (motion.lead + start_shift(world, motion.first_step)) * speed;
     }
-    // The change of the displacements between the samples, minus its value by the trapezoidal rule from the velocities
-    // at the samples, is attributed to vibrations that began in between.
+    // Root mean square displacement of the vibrations that began between the samples. It is estimated as the change of
+    // the displacements between the samples, minus its value by the trapezoidal rule from the velocities at both
+    // samples.
     const Real begun = mean_size(world, body, [&](std::size_t n) {
         return Vec3(after.displacement[n] - before.displacement[n] -
                     interval.seconds / 2 * (after.velocity[n] + before.velocity[n]));
@@ -248,13 +250,14 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     const Real decay = interval.seconds * damping_rate(frequency * step, settings.theta, step);
     motion.lost += -std::expm1(-decay) * begun;
     if (frequency > 0) motion.lost += decay * std::numbers::sqrt2 * speed / frequency;
-    // Damping of a vibration dissipates its energy, so the lost amplitude a is limited by stiffness a^2 / 2 <=
-    // dissipated energy. Under slow loads, where no vibration is lost, this limit is small.
+    // The damping of a vibration dissipates its energy. The lost amplitude a is therefore limited by stiffness a^2 / 2
+    // <= dissipated energy. Under slow loads, where no vibration is lost, this limit is small.
     const Real stiffness = motion.stiffness * world.mass(body) / motion.inertia;  // [N/m]
     const Real dissipated = dissipated_by(world) - motion.dissipated;
     if (stiffness > 0) motion.lost = std::min(motion.lost, std::sqrt(2 * std::max(Real{0}, dissipated) / stiffness));
     motion.lost = std::min(motion.lost, motion.largest);
-    // The displacement by a wrong phase is at most twice the amplitude, which is sqrt(2) speed / frequency.
+    // The position error by a wrong phase is at most twice the amplitude of the vibration. The amplitude is sqrt(2)
+    // speed / frequency.
     const Real phase = frequency > 0 ? std::min(motion.lead, 2 * std::numbers::sqrt2 / frequency) : motion.lead;
     return phase * speed + motion.lost;
 }

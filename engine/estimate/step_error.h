@@ -37,14 +37,14 @@ private:
         Deformation deformation{};                 // deformation at the last sample; empty for a rigid body
         Real first_step = 0;                       // mean length of the steps before the second sample [s]
         Real acceleration = -1;                    // mean acceleration until the second sample; -1: unknown [m/s^2]
-        // Position error because bodies rebound in wrong directions or too late [m]. deflection_rate: velocity error
-        // due to wrong directions, by which `deflected` grows until the next sample [m/s].
+        // Position error because bodies rebound in wrong directions or too late [m]. deflection_rate: growth rate of
+        // `deflected` by the wrong directions [m/s].
         Real deflected = 0, deflection_rate = 0;
         Real tumbled = 0;  // position error due to free rotation [m]
         // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the
         // squared displacements times the masses [kg m^2].
         Real stiffness = 0, inertia = 0;
-        Real lead = 0;        // sum of the phase errors of vibrations, as a time [s]
+        Real lead = 0;        // phase error of vibrations, summed over the samples, as a time [s]
         Real dissipated = 0;  // energy that the world had dissipated at the start [J]
         Real lost = 0;        // amplitude of the vibrations that numerical damping of the theta method has removed [m]
         Real largest = 0;     // largest root mean square displacement by deformation so far [m]

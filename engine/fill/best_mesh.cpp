@@ -12,8 +12,8 @@ namespace skerry::mesh {
 
 namespace {
 
-// Largest altitude of a knot, a surface triangle that thin_knots removes, as a fraction of the mean edge of the surface
-// (measured: docs/decisions/0012).
+// A knot is a very flat triangle of the surface, which thin_knots removes. Upper limit of its altitude, as a fraction
+// of the mean edge of the surface (measured: docs/decisions/0012).
 constexpr Real knot_altitude = 0.4;
 // Upper limits of the edge length that are tried, as multiples of the wanted edge. Near finer parts of the surface
 // Netgen makes smaller tetrahedra.

@@ -26,7 +26,8 @@ struct BestMesh {
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
     std::string failure{};                   // reason why no mesh was found
     bool missing = false;                    // true if the mesher is not installed
-    bool may_change = false;                 // true if a call of the mesher failed with MesherResult::may_change
+    // true if a failed call of the mesher may succeed later, see MesherResult::may_change
+    bool may_change = false;
 };
 
 /// A mesh with a changed surface replaces the mesh with the given surface if the stable step of the former is longer by

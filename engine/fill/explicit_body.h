@@ -21,8 +21,8 @@ struct ExplicitBody {
     BodyHandle handle;
 };
 
-/// Adds a body to a new world without clusters, so that its stable step is the step of the elements alone. Throws
-/// SceneError if the mesh cannot be a body.
+/// Adds a body to a new world without clusters, in which all elements are integrated explicitly. The stable step of the
+/// world is therefore that of the elements of the mesh alone. Throws SceneError if the mesh cannot be a body.
 ExplicitBody explicit_body(const Mesh& mesh, const BodyCase& body_case);
 
 }  // namespace skerry

@@ -19,14 +19,16 @@ namespace {
 // bounding box. fTetWild has the same default.
 constexpr Real default_edge = 0.05;
 // The triangles of a clean surface are kept if the ratio of the wanted edge to the mean edge of the surface is between
-// these values.
+// these values. Otherwise fTetWild makes new triangles.
 constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
-// fTetWild may use this share of the tolerance. The rest is left for the removal of needles and caps.
+// fTetWild may move the surface by this share of the tolerance. The rest is left for the removal of needles and caps,
+// which are thin triangles.
 constexpr Real envelope_share = 0.5;
 // Netgen also fills the surface of fTetWild's mesh. Netgen's mesh must have at least this fraction of the number of
 // tetrahedra of fTetWild's mesh. With fewer it would be coarser than wanted.
 constexpr Real least_count = 0.7;
-// Largest number of cubes of the wanted edge in the bounding box. More tetrahedra do not fit the memory of a computer.
+// Upper limit of the number of cubes, with the wanted edge as their side, that fill the bounding box. The memory of a
+// computer does not suffice for more tetrahedra.
 constexpr Real most_cells = 1e9;
 
 const char* const install_ftetwild = "install the Python package of fTetWild: pip install wildmeshing==0.4.1";
@@ -139,7 +141,7 @@ private:
         return explicit_body(mesh, {.material = settings_.material}).world.stable_step();
     }
 
-    /// Fills the surface by Netgen, either as it is or without needles and caps, which are thin triangles. Returns
+    /// Fills the surface by Netgen, either unchanged or without needles and caps, which are thin triangles. Returns
     /// false if Netgen makes no mesh.
     bool fill_exactly() {
         BestMesh best =
@@ -215,8 +217,8 @@ private:
 
     bool crossing() const { return result_.surface.find(SurfaceFaultKind::shell_crossings) != nullptr; }
 
-    /// Makes a mesh set of the faces of each shell, named after its file or number, if there are regions, cavities or
-    /// several files.
+    /// Makes a mesh set of the faces of each shell. The name of the set is that of the file of the shell, or contains
+    /// the number of the shell. Makes no sets unless there are regions, cavities or several files.
     void name_shells() {
         const std::size_t shells = shells_.shell.size(), files = given_.names.size();
         if (crossing()) {

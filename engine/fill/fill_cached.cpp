@@ -21,8 +21,8 @@ namespace skerry::mesh {
 
 namespace {
 
-// Part of the hash in the name of a cache file, so a new number makes earlier files unused. Raise it when fill()
-// returns other meshes than before.
+// Version of fill(). It is part of the hash in the name of a cache file, so a new version does not find files of an
+// older one. Increase it when a change of the code lets fill() return other meshes.
 constexpr std::uint64_t cache_version = 2;
 
 /// Name of the cache file: the name of the surface file, a hash, and .msh.

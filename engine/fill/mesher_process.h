@@ -22,10 +22,11 @@ struct MesherCall {
 /// The tetrahedra that a mesher made, or the reason why there are none.
 struct MesherResult {
     std::optional<Mesh> mesh{};
-    std::string failure{};  // message after the mesher's name, such as "crashed: ..."; empty if there is a mesh
-    bool missing = false;   // true if the program or the package of the mesher is not installed
-    bool stopped = false;   // true if a limit ended the mesher
-    bool crashed = false;   // true if a signal ended the mesher
+    // end of a message that begins with the mesher's name: "crashed: ..."; empty if there is a mesh
+    std::string failure{};
+    bool missing = false;  // true if the program or the package of the mesher is not installed
+    bool stopped = false;  // true if a limit ended the mesher
+    bool crashed = false;  // true if a signal ended the mesher
 
     /// True if the same call may find a mesh later or on another machine, because the mesher was missing, hit a limit
     /// or crashed.

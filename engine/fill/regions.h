@@ -30,27 +30,27 @@ struct Shells {
     std::size_t cavity_count() const;
 };
 
-/// Divides the cleaned surface of a report into shells. A shell within an odd number of others is a cavity if
-/// `all_cavities` is true or if its triangles are clockwise. The other shells bound regions, which get the labels 1, 2,
-/// ...
+/// Divides the cleaned surface of a report into shells. A shell inside an odd number of others is a cavity if
+/// `all_cavities` is true, or if its triangles are clockwise as seen from outside the shell. The other shells bound
+/// regions, which get the labels 1, 2, ...
 Shells shells_of(const SurfaceReport& report, bool all_cavities);
 
-/// The triangles of all shells. Those of cavities are turned inside out, so that the winding number is 0 inside a
-/// cavity.
+/// Returns the triangles of all shells. Those of cavities are turned inside out, so that the winding number is 0 inside
+/// a cavity.
 SurfaceMesh whole_surface(const Shells& shells);
 
 /// Boundary of the region inside a shell: the triangles of the shell and, turned inside out, those of the shells
 /// directly inside it.
 SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell);
 
-/// The surface without the nodes that no triangle uses. `kept_nodes`, if given, gets the index in `surface` of each
-/// remaining node.
+/// Returns the surface without the nodes that no triangle uses. `kept_nodes`, if given, gets the index in `surface` of
+/// each remaining node.
 SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept_nodes = nullptr);
 
-/// Labels each tetrahedron by the smallest shell of a region around its centroid.
+/// Gives each tetrahedron the label of the smallest shell around its centroid. Shells of cavities are ignored.
 void label_regions(Mesh& mesh, const Shells& shells);
 
-/// Boundary triangles, and faces between tetrahedra with different labels.
+/// Returns the boundary triangles of a mesh, and the faces between tetrahedra with different labels.
 std::vector<std::array<Index, 3>> faces_of_regions(const Mesh& mesh);
 
 /// Divides the faces of regions among the shells: each face belongs to the shell that is nearest to its centroid.

@@ -36,7 +36,7 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     Client& client = clients_.emplace_back();
     client.number = ++last_client_;
     client.link = &link;
-    // the first frame then comes from a new snapshot, because the last one may be outdated
+    // The browser counts as having the last snapshot, which may be outdated. Its first frame then comes from a new one.
     client.snapshot = last_snapshot_;
     if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
@@ -265,8 +265,9 @@ void LiveHub::serve(Client& client) {
             outgrown = encoder.is_outgrown(*snapshot);
         }
         lock.lock();
-        if (std::exchange(outgrown, false)) client.run = 0;  // differs from run_, so the next turn starts a new stream
-        // released under the lock, so that free_snapshot() returns it only after it was read completely
+        if (std::exchange(outgrown, false)) client.run = 0;  // run_ is at least 1, so the next turn starts a new stream
+        // The snapshot is released under the lock, so that free_snapshot() returns it only after it was read
+        // completely.
         snapshot.reset();
     }
     client.closed = true;

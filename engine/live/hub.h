@@ -30,10 +30,12 @@ public:
     virtual void close() = 0;
 };
 
+/// Passes commands from the browsers to the simulation, and snapshots from the simulation to the browsers.
+///
 /// Each browser has its own thread, which encodes and sends frames. So a browser that hangs does not delay the others.
-/// A browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are not encoded. A
-/// stream is a sequence of frames for one browser. Its first frame is complete; each later one contains the differences
-/// from the frame sent before it.
+/// A browser gets a new frame while at most one earlier frame is unacknowledged. Frames that it misses are not encoded.
+/// A stream is a sequence of frames for one browser. Its first frame is complete; each later one contains the
+/// differences from the frame sent before it.
 class LiveHub {
 public:
     static constexpr std::size_t most_clients = 4;
@@ -101,14 +103,15 @@ private:
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
         bool closed = false;                          // true: its thread ends the connection
-        FrameContent content = FrameContent::motion;  // fields that it shows
-        bool pulls = false;                           // true: it still pulls a body
+        FrameContent content = FrameContent::motion;  // least content with the fields that it shows
+        bool pulls = false;                           // true: the browser pulls a body
         std::deque<std::string> texts;                // messages that wait for its thread
-        std::uint64_t run = 0;                        // number of the run in its stream; 0: it starts a new stream
-        std::uint64_t snapshot = 0;                   // number of the last snapshot that the browser got
-        std::uint64_t version = 0;                    // version of this last snapshot; 0: the browser needs a frame
-        std::uint64_t sent = 0, seen = 0;             // numbers of the last frames sent and acknowledged
-        std::vector<BodyHandle> bodies;               // copy of LiveEncoder::bodies of its stream
+        // number of the run that its stream shows; 0: it needs a new stream
+        std::uint64_t run = 0;
+        std::uint64_t snapshot = 0;        // number of the last snapshot that the browser got
+        std::uint64_t version = 0;         // version of this snapshot; 0: the browser needs a frame
+        std::uint64_t sent = 0, seen = 0;  // numbers of the last frames sent and acknowledged
+        std::vector<BodyHandle> bodies;    // copy of LiveEncoder::bodies of its stream
         std::thread thread;
 
         bool is_ready() const { return sent - seen < 2; }

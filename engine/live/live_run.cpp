@@ -14,12 +14,12 @@ namespace {
 
 // Longest simulated time of a call of advance [s]. It equals the default time between two frames of a scene.
 constexpr Real frame_step = 1.0 / 60;
-constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
-// least wall time from one snapshot to the next, as a multiple of the time to take one: at most 1/4 of the wall time is
-// spent on snapshots
+constexpr Real frames_per_second = 30;  // largest number of snapshots per second of wall time [1/s]
+// Least wall time from one snapshot to the next, as a multiple of the time to take one. With 4, snapshots take at most
+// 1/4 of the wall time.
 constexpr int snapshot_pause = 4;
 constexpr Real longest_wait = 0.02;  // longest wait in due(), and in sync() while paused [s]
-// largest lag behind the wall clock that is made up for; the pace restarts at a larger one [s]
+// Largest lag behind the wall clock that is made up for [s]. A larger lag is forgotten: the pace restarts.
 constexpr Real longest_lag = 0.1;
 constexpr Real fastest_rate = 1000;  // largest simulated time per wall time
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();

@@ -70,9 +70,9 @@ private:
     Real shown_time_ = 0;             // simulated time when a snapshot was last due [s]
     Real sampled_time_ = 0;           // simulated time of the last sample of the probes [s]
     Clock::time_point next_show_{};   // wall time from which a snapshot is due
-    Clock::time_point pace_wall_{};   // wall time at which the simulated time was pace_time_
+    Clock::time_point pace_wall_{};   // reference of the pace: at this wall time the simulated time was pace_time_
     Real pace_time_ = 0;              // [s]
-    Clock::time_point speed_wall_{};  // begin of the interval over which the speed is measured
+    Clock::time_point speed_wall_{};  // wall time at the start of the interval over which the speed is measured
     Real speed_time_ = 0;             // simulated time at speed_wall_ [s]
     Real speed_ = 0;                  // simulated time per wall time
 

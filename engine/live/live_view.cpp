@@ -38,7 +38,8 @@ LiveView::LiveView(World& world, const LiveSettings& settings) {
 }
 
 LiveView::~LiveView() {
-    // In a process made by fork() the view is left in memory, because it would wait for its threads.
+    // In a process made by fork() the view is left in memory, because its destructor would wait for threads that do not
+    // exist there.
     if (impl_ && impl_->lost_threads()) [[maybe_unused]]
         const Impl* left = impl_.release();
 }

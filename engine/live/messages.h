@@ -13,7 +13,7 @@
 
 namespace skerry {
 
-/// Controls of the page that the user can change.
+/// State of the controls on the page that the user can change.
 struct LiveState {
     bool playing = true;
     Real rate = 1;        // simulated time per wall time; 0: as fast as possible
@@ -37,7 +37,7 @@ struct LiveRunInfo {
     std::vector<LivePlot> plots;
 };
 
-/// First message of a run. The browser discards all objects and decodes the next frame as the first one.
+/// First message of a stream. The browser then discards all objects, and decodes the next frame as the first one.
 std::string begin_text(const LiveRunInfo& info, const LiveState& state);
 std::string state_text(const LiveState& state);
 /// Reports a refused command, or a failed step.

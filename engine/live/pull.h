@@ -20,10 +20,10 @@ struct PullState {
 
 /// Drags a body by a spring without rest length from a point of its surface to a target. The stiffness is m (2 pi f)^2
 /// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. For a deformable body, up to
-/// 12 parallel springs around the point share stiffness and force equally. A drag field damps the body critically: a
-/// stiff free body approaches the target as (1 + w t) exp(-w t) with w = 2 pi f. The field acts on the whole body,
-/// because a damper at the point would shorten the step of a fine mesh much more. With springs and field the step is
-/// about 3 % shorter, for an implicit body 25 %.
+/// 12 parallel springs around the point share stiffness and force equally. A drag field damps the body critically: the
+/// distance of a stiff free body from the target decreases with the time t as (1 + w t) exp(-w t), w = 2 pi f. The
+/// field acts on the whole body, because a damper at the point would shorten the step of a fine mesh much more. With
+/// springs and field the step is about 3 % shorter, for an implicit body 25 %.
 ///
 /// The springs and the field are objects of the world until end(). They are removed with the body. World::reset to a
 /// clone without them ends the pull.

@@ -39,12 +39,13 @@ struct Snapshot {
 /// Takes snapshots of a world. Surfaces and shapes, which do not change, are copied once and shared by all snapshots.
 class SnapshotTaker {
 public:
-    /// Replaces the content of `snapshot`, and reuses its memory. A content below mesh_error does not include the
-    /// energy, which takes a pass over all elements. It is then calculated so rarely that it takes at most 1 % of the
-    /// wall time, and the snapshots between get the last result.
+    /// Replaces the content of `snapshot`, and reuses its memory. FrameContent::mesh_error includes the energy. For a
+    /// lesser content, the energy takes an extra pass over all elements. It is then calculated so rarely that it takes
+    /// at most 1 % of the wall time, and the snapshots in between get the last result.
     void take(const World& world, FrameContent content, Snapshot& snapshot);
-    /// Returns true if time is earlier than in the last snapshot, or if a body has other numbers of nodes or triangles
-    /// than when it was first taken. Then the owner has reset or replaced the world, and streams must start anew.
+    /// Returns true if the time is earlier than in the last snapshot, or if a body has other numbers of nodes or
+    /// triangles than in its first snapshot. The owner has then reset or replaced the world, and streams must start
+    /// anew.
     bool is_other_run(const World& world) const;
     /// Forgets all objects, the energy and the time of the last snapshot.
     void clear();

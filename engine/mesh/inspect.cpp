@@ -12,7 +12,8 @@
 namespace skerry {
 namespace {
 
-// Tetrahedra of lower quality count as slivers. Their small altitudes shorten the stable time step and reduce accuracy.
+// Tetrahedra with a smaller quality() count as slivers. The small altitudes of slivers shorten the stable time step and
+// reduce accuracy.
 constexpr Real poor_quality = 0.1;
 
 using Edge = std::pair<Index, Index>;  // nodes of an edge, the lower number first

@@ -11,8 +11,8 @@ namespace skerry::mesh {
 /// Number of tetrahedra with each label.
 std::map<int, std::size_t> count_labels(const Mesh& mesh);
 
-/// Returns the text on the expected label for an error message: "one of the labels of the mesh: 1, 2, 5" (at most 20
-/// labels), or that no label is expected if the mesh has none.
+/// Returns the part of an error message that says which labels are possible: "one of the labels of the mesh: 1, 2, 5"
+/// (at most 20 labels), or that the mesh has no labels.
 std::string expected_label(const Mesh& mesh);
 
 }  // namespace skerry::mesh

@@ -27,7 +27,7 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
     for (const BoundaryTriangle& triangle : boundary) triangles.push_back(triangle.node);
     UnionFind fans;
     fans.start(3 * triangles.size());
-    std::string fault;  // the first one
+    std::string fault;  // description of the first violation
     std::size_t count = 0;
     const std::vector<Side> sides = sorted_sides(triangles);
     for_each_edge(sides, [&](std::span<const Side> edge) {

@@ -99,10 +99,10 @@ bool any_overlap(const Mesh& mesh) {
     return false;
 }
 
-/// Reverses the orientation of the inverted tetrahedra of a mesh whose node numbers are valid, unless one of them would
-/// then overlap another tetrahedron. Some programs list the nodes of all or some tetrahedra in the opposite order. In
-/// another kind of faulty file, a node lies in a wrong place: tetrahedra at this node are inverted, too, but do not
-/// overlap their neighbours across faces. Turning them would cause overlaps, so they stay inverted.
+/// Reverses the inverted tetrahedra of a mesh, whose node numbers must be valid. Some programs list the nodes of all or
+/// some tetrahedra in the opposite order, and then reversal is right. In other faulty files a node lies in a wrong
+/// place and inverts the tetrahedra around it; reversed, these would overlap their neighbours across faces. If only
+/// some tetrahedra are inverted and reversal makes any overlap, all stay as they are.
 void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
@@ -122,8 +122,8 @@ void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* n
                          " tetrahedra list their nodes in the opposite order (negative volume) and were turned");
 }
 
-/// Adds the sets of a file to the mesh. used[n]: index in the file of node n of the mesh. Sets without any part in the
-/// mesh are dropped, with a note.
+/// Adds the sets of a file to the mesh. used[n]: index in the file of node n of the mesh. Drops sets of which no member
+/// is in the mesh, and adds a note about each.
 void take_sets(const std::string& path, std::map<std::string, MeshSet>& raw, std::span<const Index> used,
                std::size_t raw_nodes, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<Index> new_index(raw_nodes, no_index);
@@ -225,7 +225,7 @@ void read_materials(const std::string& path, const std::vector<std::string>& fil
             if (used == materials.end()) continue;
             missing.erase(found.name);
             *used = std::move(found);
-            // The path becomes absolute, because a saved world must find the image from any working folder.
+            // A saved world must find the image from any working folder, so the path is made absolute.
             if (!used->texture.empty())
                 used->texture = std::filesystem::absolute(used->texture).lexically_normal().string();
         }

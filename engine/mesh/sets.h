@@ -12,7 +12,7 @@
 
 namespace skerry::mesh {
 
-/// The nodes of a face in ascending order, by which faces are compared.
+/// Nodes of a face in ascending order. Faces with the same sorted nodes are the same face.
 inline std::array<Index, 3> sorted_face(std::array<Index, 3> face) {
     std::ranges::sort(face);
     return face;
@@ -22,17 +22,17 @@ inline std::array<Index, 3> sorted_face(std::array<Index, 3> face) {
 /// earlier face of the set; the order of the other faces is kept.
 void tidy(MeshSet& set);
 
-/// Throws SceneError that names `object` and the set if a number is out of range, or if a listed face is not a face of
-/// the tetrahedra or of the surface.
+/// Throws SceneError if a node or tetrahedron of a set does not exist, or if a listed face is neither a face of the
+/// tetrahedra nor of the surface. The message names `object` and the set.
 void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
                  std::span<const std::array<Index, 4>> tetrahedra, std::span<const std::array<Index, 3>> surface = {});
 
-/// Orients those faces of the sets that are boundary triangles outward, and drops triangles that are not faces of the
-/// tetrahedra. Returns the number of dropped triangles.
+/// Orients each face of the sets outward if it is on the boundary of the mesh. Drops triangles that are not faces of
+/// the tetrahedra, and returns their number.
 std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::map<std::string, MeshSet>& sets);
 
-/// Returns the text on the expected set for an error message: that one of the sets "a", "b" is expected, or that there
-/// are no sets.
+/// Returns the part of an error message that says which sets are possible: one of the sets "a", "b", or that there are
+/// no sets.
 std::string expected_set(const std::vector<std::string>& names);
 std::vector<std::string> names_of(const std::map<std::string, MeshSet>& sets);
 

@@ -21,7 +21,8 @@ struct Subdivision {
 /// Divides a mesh as `refine` does, and returns a record of the division.
 Subdivision subdivide(Mesh& mesh);
 
-/// Appends to a set of nodes the midpoints that belong to the set by the rule of `refine`, in ascending order.
+/// Appends midpoints of edges to a set of nodes, in ascending order. The rule of `refine` says which midpoints belong
+/// to the set.
 void add_midpoints(const Subdivision& subdivision, std::vector<Index>& nodes);
 
 }  // namespace skerry::mesh

@@ -9,8 +9,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Largest ratio six_volumes / (longest edge)^3 for which a tetrahedron counts as flat. A regular tetrahedron has the
-// ratio 0.71.
+// Upper limit of the ratio |six_volumes| / (longest edge)^3 up to which a tetrahedron counts as flat. A regular
+// tetrahedron has the ratio 0.71.
 constexpr Real flat_ratio = 1e-12;
 
 std::array<Vec3, 4> corners(const Mesh& mesh, const std::array<Index, 4>& t) {
@@ -51,8 +51,7 @@ Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedro
     const Real volume = six_volumes(mesh, tetrahedron);
     const std::array<Real, 6> edges = edge_lengths(mesh, tetrahedron);
     const Real longest = *std::max_element(edges.begin(), edges.end());
-    // The comparison is negated, so that a tetrahedron also counts as flat if the product underflows to zero or a value
-    // is NaN.
+    // The negated comparison makes a tetrahedron flat also if the product underflows to zero or a value is NaN.
     if (!(std::abs(volume) > flat_ratio * longest * longest * longest)) return Orientation::flat;
     return volume > 0 ? Orientation::positive : Orientation::inverted;
 }

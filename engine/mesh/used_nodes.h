@@ -15,8 +15,8 @@ struct UsedNodes {
     std::vector<Index> number;
 };
 
-/// Removes nodes that no element uses. `rows`: node indices of each element; they are updated. The remaining nodes stay
-/// in order.
+/// Removes nodes that no element uses. `rows`: node indices of each element, which are changed to the new indices. The
+/// remaining nodes stay in order.
 template <std::size_t N>
 UsedNodes drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
     std::vector<Index> new_index(nodes.size(), no_index);

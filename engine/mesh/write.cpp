@@ -20,8 +20,8 @@ std::string name_in_file(const std::string& name) {
     return '"' + text + '"';
 }
 
-/// Writes the names of sets of nodes (points) and of faces (surfaces), with the numbers of the physical groups, counted
-/// from 1.
+/// Writes the names of the sets of nodes (as groups of points) and of faces (as groups of surfaces). The numbers of
+/// these physical groups count the sets from 1.
 void write_names(std::ostream& out, const std::map<std::string, MeshSet>& sets) {
     std::size_t count = 0, number = 0;
     for (const auto& [name, set] : sets) count += (set.nodes.empty() ? 0u : 1u) + (set.faces.empty() ? 0u : 1u);
@@ -36,7 +36,7 @@ void write_names(std::ostream& out, const std::map<std::string, MeshSet>& sets) 
 }
 
 /// Writes the nodes and faces of sets as Gmsh elements of the types point (15) and triangle (2). `element`: number of
-/// elements written before.
+/// elements that are already written.
 void write_members(std::ostream& out, const std::map<std::string, MeshSet>& sets, std::size_t element) {
     std::size_t number = 0;
     for (const auto& [name, set] : sets) {
@@ -48,8 +48,8 @@ void write_members(std::ostream& out, const std::map<std::string, MeshSet>& sets
     }
 }
 
-/// Writes each set of tetrahedra as element data with the value 1, because the format allows only one physical group
-/// per tetrahedron, which already holds the label.
+/// Writes each set of tetrahedra as element data with the value 1. The format allows a tetrahedron only one physical
+/// group, and this group already holds the label.
 void write_tetrahedra(std::ostream& out, const std::map<std::string, MeshSet>& sets) {
     for (const auto& [name, set] : sets) {
         if (set.tetrahedra.empty()) continue;

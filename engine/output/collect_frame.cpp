@@ -29,8 +29,8 @@ const BoundVisual* visual_of(const World& world, BodyHandle body) {
     return model.body_records[static_cast<std::size_t>(model.row(body, "frame"))].visual.get();
 }
 
-/// Returns a value for each cell of a body, given the values of its tetrahedra. A body without tetrahedra is rigid; its
-/// cells are triangles and get the value `zero`.
+/// Returns a value for each cell of a body, given the values of its tetrahedra. In a body without tetrahedra, which is
+/// rigid, the cells are triangles, and each gets the value `zero`.
 template <class T>
 std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& body, const T& zero) {
     of_tetrahedra.resize(body.count_cells(), zero);

@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Radius of gyration of the first body of a joint about its centre of mass: half the length of the drawn axis [m]. The
-/// principal moments add up to twice the integral of the squared distance.
+/// Radius of gyration of the first body of a joint about its centre of mass; the drawn axis is twice as long [m]. The
+/// principal moments of inertia add up to twice the integral of the squared distance from the centre of mass.
 Real gyration_radius(const Model& model, JointHandle joint) {
     const auto first =
         static_cast<std::size_t>(model.joints.first[static_cast<std::size_t>(model.row(joint, "frame"))]);

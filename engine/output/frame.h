@@ -17,8 +17,8 @@
 namespace skerry {
 
 /// State of a body in one frame of output. After collect_frame() the spans refer to arrays of the World and are valid
-/// until the world changes; a Snapshot lets them refer to copies. Values that the FrameContent of collect_frame() does
-/// not include are empty.
+/// until the world changes. A Snapshot (frame of a live view) lets them refer to copies. Values that the FrameContent
+/// of collect_frame() does not include are empty.
 struct BodyFrame {
     BodyHandle handle;
     std::string name;

@@ -51,7 +51,7 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    // Least number of minutes, hours or days for which this unit is used. A shorter duration is given in the next
+    // Least number of minutes, hours or days that is written in that unit. A shorter duration is written in the next
     // smaller unit.
     constexpr double enough = 2;
     for (const Unit& unit : units)

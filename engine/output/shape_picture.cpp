@@ -15,7 +15,7 @@ constexpr int sectors = 48;
 constexpr int arc_steps = 12;    // number of facets per quarter circle of a profile; each covers 7.5 degrees
 constexpr int plane_cells = 10;  // number of grid cells per edge of the displayed square of a plane
 
-// points (radius, z) of a curve along which the outside of the shape lies on the right
+// points (radius, z) of a curve; seen along the curve, the outside of the shape lies on the right
 using Profile = std::vector<std::array<Real, 2>>;
 
 /// Adds a circular arc with centre (0, z) to a profile. The angles `start` and `end` are measured from the horizontal,

@@ -14,8 +14,8 @@ struct PlanePatch {
     Real half_size = 1;          // [m]
 };
 
-/// Returns a patch around the bodies, to be displayed for every plane. Its centre is in world coordinates. Half of its
-/// edge is the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
+/// Returns a patch around the bodies, which is displayed for every plane. Its centre is in world coordinates. Its
+/// `half_size` is the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
 std::optional<PlanePatch> patch_around(std::span<const BodyFrame> bodies);
 
 /// Returns a triangle mesh of a shape in the frame of the shape. `patch`: displayed part of a plane, with its centre in

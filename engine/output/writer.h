@@ -15,9 +15,9 @@ namespace skerry {
 /// State of a run at the moment when its outputs are opened.
 struct RunStart {
     double step_count = 0;   // estimated number of remaining steps
-    std::size_t frames = 0;  // number of frames written before a resumption; 0 for a new run
+    std::size_t frames = 0;  // number of frames written so far if the run is resumed; 0 for a new run
     Real frame_step = 0;     // time between two frames [s]
-    Real row_step = 0;       // time between two rows of a series; 0: every call of Writer::sample makes a row [s]
+    Real row_step = 0;       // time between two rows of a series [s]; 0: every call of Writer::sample makes a row
 
     bool resumed() const { return frames > 0; }
 };

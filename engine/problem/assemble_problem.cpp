@@ -67,8 +67,9 @@ private:
 };
 
 /// Adds the blocks of W between contacts on the same rigid body, and between contacts on the same implicit body due to
-/// its rigid motion. Contacts with the weights w_a, w_b and the arms x_a, x_b are coupled by w_a w_b (I / m + [x_a]
-/// J^-1 [x_b]^T), where m is the mass, J the inertia tensor, and [x] v = x cross v.
+/// its rigid motion. Two contacts a and b with the weights w and the arms x, from the centre of mass to the contact
+/// point, are coupled by w_a w_b (I / m + [x_a] J^-1 [x_b]^T), where m is the mass, J the inertia tensor, and [x] v = x
+/// cross v.
 void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     const auto crossing = [](const Vec3& v) {
@@ -114,7 +115,7 @@ void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame
     }
 }
 
-/// Adds the blocks of W between contacts on the same group of coupled nodes.
+/// Adds the blocks of W between contacts on the same group of nodes with a coupled mass matrix.
 void add_coupled(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     for (const CoupledNodes& group : contacts.coupled) {
@@ -155,8 +156,8 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
                 // Contribution of one node to W_ij = S_ij I (docs/methods/contact.md 2.1), rotated into the contact
-                // frames; bitwise symmetric. In a diagonal block both frames are the same and cancel, so it is not
-                // rotated, which would add rounding errors.
+                // frames; bitwise symmetric. In a diagonal block both rotations cancel. They are left out there,
+                // because they would add rounding errors.
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

@@ -58,8 +58,8 @@ std::string freedom_text(const MassParts& parts, Index part, Index row) {
 }
 
 MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass) {
-    // Largest asymmetry of an entry M_ij by rounding, relative to sqrt(M_ii M_jj). A matrix that is really unsymmetric
-    // exceeds it by far.
+    // Upper limit of the asymmetry of an entry M_ij by rounding, relative to sqrt(M_ii M_jj). A matrix that is really
+    // unsymmetric exceeds it by far.
     constexpr Real rounding = 1e-9;
     const SparseMatrix difference = mass - SparseMatrix(mass.transpose());
     const Eigen::VectorXd diagonal = mass.diagonal();
@@ -121,7 +121,8 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
         pushed = h.middleCols(3 * begin, 3 * (end - begin));
         const Eigen::MatrixXd moved = factors.solve(pushed);
         const Eigen::MatrixXd w = h.transpose() * moved;
-        // Only blocks with i <= j are used, and mirrored, so that W is bitwise symmetric.
+        // Only blocks with i <= j are taken from `w`. Their transposes serve as the blocks (j, i), so W is bitwise
+        // symmetric.
         for (Index j = begin; j < end; ++j)
             for (Index i = 0; i <= j; ++i) {
                 Mat3 block = w.block<3, 3>(3 * i, 3 * (j - begin));

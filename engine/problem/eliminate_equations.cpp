@@ -15,8 +15,8 @@ namespace skerry {
 
 namespace {
 
-/// A linear function of velocities, u = sum of along . velocity + turn . angular velocity. An impulse s of the row acts
-/// on each node and body with the same coefficients: impulse s along, angular impulse s turn.
+/// A linear function of velocities: u = sum of `along` . velocity + `turn` . angular velocity, over nodes and bodies.
+/// An impulse s of the row gives each of them the impulse s `along` and the angular impulse s `turn`.
 struct VelocityRow {
     struct OnNode {
         Index node;
@@ -27,7 +27,7 @@ struct VelocityRow {
         // coefficients of velocity [1] and angular velocity [m]; a row for a rotation has along = 0 and turn in [1]
         Vec3 along, turn;
     };
-    // coefficients of node velocities; in implicit bodies these are relative to the frame of the body
+    // coefficients of node velocities; for an implicit body, of the velocities relative to its frame
     std::vector<OnNode> nodes;
     std::vector<OnFrame> frames;  // coefficients of the rigid motion of rigid and implicit bodies
 
@@ -42,9 +42,10 @@ struct VelocityRow {
     }
 };
 
-/// The quantity of an equation that keeps its value from the step when the contact impulses change. `velocity`: the
-/// velocity; the impulse in the step is known. `held`: the velocity; the impulse in the step is not known. `impulse`:
-/// the impulse.
+/// The quantity of an equation that stays as it was in the step when the contact impulses change.
+/// - velocity: its velocity; its impulse in the step is known.
+/// - impulse: its impulse.
+/// - held: its velocity; its impulse in the step is not known (see find_held_impulses()).
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
@@ -87,8 +88,9 @@ public:
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
-            // Lever arm from the core of a round body to the contact point. beside_core() already contains the sum of
-            // the weights, so the arm is added only with the first node of the body in the stencil.
+            // Lever arm from the core of a round body (its centre or axis) to the contact point. beside_core() returns
+            // the arm times the sum of the weights of all nodes of the body. So it is added only once, with the first
+            // of these nodes.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& term) { return term.frame == frame; });
@@ -114,7 +116,8 @@ public:
         return sum;
     }
     /// Calls visit(leader) for each node and frame of a row. The leader is a node that represents all nodes whose
-    /// masses are coupled with each other: those of a cluster, or of a rigid or implicit body.
+    /// masses are coupled with each other. These are the nodes of a rigid or implicit body, or of a cluster (nodes of
+    /// an explicit body with a common inertia matrix).
     void for_each_leader(const VelocityRow& row, auto&& visit) const {
         for (const auto& term : row.frames) visit(leader_of_frame(term.frame));
         for (const auto& term : row.nodes) visit(leader_of_node(term.node));
@@ -127,7 +130,8 @@ public:
     }
 
 private:
-    /// Velocity change of node `a` due to the impulse `impulse` on node `b`, without the rigid motion of their body.
+    /// Velocity change of node `a` due to the impulse `impulse` on node `b`. The rigid motion of their body is not
+    /// included: the frames of the rows describe it.
     Vec3 of_nodes(Index a, Index b, const Vec3& impulse) const {
         const Index frame = inputs_.rigid.nodes.row(a);
         if (frame != no_index) {
@@ -194,8 +198,9 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
     }
 }
 
-/// Adds the rows of welds and slides. A weld has three rows, along the world axes. A slide has one row. Its direction
-/// is the whole impulse vector of the step, not a unit vector, so its impulse is 1.
+/// Adds the rows of welds and slides. A weld (a tie without motion) has three rows, along the world axes. A slide (a
+/// tie with tangential motion) has one row. Its direction is the whole impulse vector of the step, not a unit vector,
+/// so its impulse is 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -219,7 +224,8 @@ void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mo
     }
 }
 
-/// Adds the three rows of a ball tie. Row k sums velocity component k over all points of the tie.
+/// Adds the three rows of a ball tie, which holds only the centre of mass of its points. Row k sums the velocity
+/// component k over all points of the tie.
 void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                std::vector<EquationRow>& rows) {
     for (Index k = 0; k < 3; ++k) {
@@ -239,7 +245,7 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
 constexpr Real negligible_part = 1e-7;
 
 /// A contact counts as immovable if elimination reduces its inverse mass along the normal to less than this fraction of
-/// its value before. The fraction is the square of an angle of 1e-3 rad (see negligible_part). The value may exceed
+/// the value without joints. The fraction is the square of an angle of 1e-3 rad (see negligible_part). It may exceed
 /// `negligible_part`, because immovable contacts keep their impulses of the step in q.
 constexpr Real immovable_part = 1e-6;
 
@@ -251,7 +257,7 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
     const Eigen::VectorXd scale =
         matrix.diagonal().unaryExpr([](Real value) { return value > 0 ? 1 / std::sqrt(value) : Real(0); });
     const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-    // The size is given, because Eigen does not resize here (EIGEN_NO_AUTOMATIC_RESIZING).
+    // The solver gets the size here, because Eigen does not resize it later (EIGEN_NO_AUTOMATIC_RESIZING).
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> factors(matrix.rows());
     factors.compute(scaled);
     const Eigen::VectorXd roots = factors.eigenvalues().unaryExpr(
@@ -334,7 +340,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     for (const EquationRow& equation : rows)
         mobilities.for_each_leader(equation.row,
                                    [&](Index leader) { sets.join(mobilities.leader(equation.row), leader); });
-    std::map<Index, Group> groups;  // indexed by the root of the set in `sets`
+    std::map<Index, Group> groups;  // by the root of the union-find set of their leaders in `sets`
     for (EquationRow& equation : rows) {
         Group& group = groups[sets.root(mobilities.leader(equation.row))];
         (equation.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);

@@ -19,7 +19,7 @@ struct HeldDirection {
     Vec3 direction;
 };
 
-/// Equations of a step other than contacts, with the impulses that the solve has found.
+/// Constraint equations of a step apart from the contacts, with the impulses that the solve has found.
 struct StepEquations {
     const JointBlockTable& joints;
     const TieRowTable& tie_rows;
@@ -29,19 +29,20 @@ struct StepEquations {
     std::vector<HeldDirection> held{};
 };
 
-/// Replaces W and q of the problem by those of contacts between bodies that joints, ties and rollers connect. The rows
-/// of joints, welds, ball ties and rollers are eliminated. Let C be the block of the Delassus operator between contacts
-/// and eliminated rows, E the block among eliminated rows, and G the block between contacts and all rows. Let r* be the
-/// impulses of contacts and s* those of all rows in the step. Then
+/// Includes joints, ties and rollers in W and q of a problem, so that a solver for contacts alone can solve it. The
+/// rows (scalar equations) of joints, welds, ball ties and rollers are eliminated: any contact impulses leave the
+/// velocities of these rows as they are after the step. C, E and G are blocks of the Delassus operator, which maps
+/// impulses to velocity changes: C couples contacts with eliminated rows, E eliminated rows with each other, G contacts
+/// with all rows. r* are the impulses of the contacts in the step, s* those of all rows. Then
 ///
-///     W' = W - C E^-1 C^T,     q' = q + G s* + C E^-1 C^T r*,
+///     W' = W - C E^-1 C^T,     q' = q + G s* + C E^-1 C^T r*.
 ///
-/// so that the velocities of the eliminated rows stay those of the step, and r* solves the new problem if it solved the
-/// problem of the step. Rows of slides, of cables, and of motors, limits and passive forces of joint axes are not
-/// eliminated: they keep their impulses of the step. `contact`: for each contact of the problem, its row in `inputs`.
-/// `impulse`: r*, in the contact frames. Returns the numbers of the contacts that impulses can no longer move along
-/// their normals. The blocks of these contacts are set to zero, and q of the other contacts includes the effect of the
-/// impulses that these contacts had in the step. Returns nothing if no row acts on a contact.
+/// If r* solved the problem of the step, it also solves the new one. Rows of slides, of cables, and of motors, limits
+/// and passive forces of joint axes are not eliminated: they keep their impulses of the step. `contact`: for each
+/// contact of the problem, its row in `inputs`. `impulse`: r*, in the contact frames. Returns the numbers of the
+/// contacts that impulses can no longer move along their normals. The blocks of these contacts are set to zero, and q
+/// of the other contacts includes the effect of the impulses that these contacts had in the step. Returns nothing if no
+/// row acts on a contact.
 std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equations, const RegionInputs& inputs,
                                                       std::span<const Index> contact, std::span<const Vec3> impulse,
                                                       ContactProblem& problem);

@@ -25,8 +25,8 @@ struct MatrixSize {
 };
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group);
 
-/// Reads all entries of a matrix, stored as compressed columns (nz = -1), compressed rows (nz = -2) or nz triplets.
-/// Throws SceneError.
+/// Reads all entries of a matrix. Its field nz says how they are stored: -1 for compressed columns, -2 for compressed
+/// rows, otherwise the number of triplets (row, column, value). Throws SceneError.
 MatrixEntries read_matrix(const Hdf5File& file, const std::string& group);
 
 /// Throws SceneError unless the number `found` equals the number `expected`. `meaning` explains the expected number in

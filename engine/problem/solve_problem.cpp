@@ -60,10 +60,10 @@ struct Work {
     std::vector<Index> used;  // number of iterations that each region needed
 };
 
-/// Solves all regions. The tolerance applies to the norm of the errors of all regions. Squares of norms add up, so the
-/// share of a region in the tolerance is proportional to the square root of its number of contacts. The relative error
-/// refers to norms that are known only at the end. If the relative error of the whole problem is then too large, the
-/// regions continue with half the tolerance.
+/// Solves all regions. The tolerance applies to the norm of the errors of all regions together. Squares of norms add
+/// up, so a region gets a share of the tolerance proportional to the square root of its number of contacts. Errors are
+/// relative to norms of the solution, which are known only at the end. If the error is then too large, the regions
+/// continue with half the tolerance.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);

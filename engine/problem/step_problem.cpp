@@ -31,7 +31,7 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
     return text;
 }
 
-/// Returns the clusters that contacts touch.
+/// Returns the clusters (groups of nodes with a common inertia matrix) that contacts touch.
 std::vector<CoupledNodes> coupled_nodes(const RegionInputs& contacts) {
     std::vector<CoupledNodes> coupled;
     if (!contacts.clustered()) return coupled;

@@ -17,7 +17,7 @@ struct RunMemory {
     std::vector<std::string> assignments;  // assignments PLACE=VALUE that change the scene
     double seconds = 0;                    // planned duration of the run [s]
     double frame_step = 0;                 // time between two frames [s]
-    int samples = 1;                       // largest number of calls of advance per frame
+    int samples = 1;                       // largest number of calls of World::advance per frame
     double probe_step = 0;                 // time between two samples of the probes; 0: no probes [s]
     long frame = 0;                        // number of the frame being simulated
     int sample = 0;                        // index of the next call of advance within the frame
@@ -27,8 +27,8 @@ struct RunMemory {
 };
 
 Json to_json(const RunMemory& memory);
-/// Reads the text of to_json. `source`: file or rank that the text comes from, for messages. Throws SceneError if the
-/// text is empty or damaged.
+/// Parses the text of a JSON document from to_json(). `source`: file or rank that the text comes from, for messages.
+/// Throws SceneError if the text is empty or damaged.
 RunMemory memory_of(const std::filesystem::path& source, const std::string& text);
 
 struct Restart {
@@ -53,12 +53,13 @@ public:
     bool wanted() const { return !file_.empty(); }
     bool due(double time) const;
     /// Writes a checkpoint of the world at `time`. If this fails, reports the error on standard error and leaves the
-    /// previous checkpoint in place. `world`: null on a rank that writes no files; then only the next checkpoint is
-    /// scheduled.
+    /// previous checkpoint in place. `world`: null on a rank (MPI process) that writes no files; the call then only
+    /// schedules the next checkpoint.
     void write(World* world, double time, const RunMemory& memory);
     int written() const { return written_; }
     int failed() const { return failed_; }
-    /// Error of the last checkpoint; empty if it was written. A file that exists then holds an earlier state.
+    /// Error of the last attempt to write a checkpoint; empty if it succeeded. After an error, the file holds the state
+    /// of an earlier checkpoint, if it exists at all.
     const std::string& failure() const { return failure_; }
     /// Returns a description of the checkpoint file for the user.
     std::string summary() const;

@@ -55,7 +55,7 @@ struct RunOptions {
     bool quiet = false;
     bool profile = false;               // also print step limits, solver statistics, energies and stage times
     bool strict = false;                // warnings count as failure: the run ends with exit_failed
-    bool series_figures = false;        // RunResult::series is computed, for the table of a sweep
+    bool series_figures = false;        // compute RunResult::series, for the table of a sweep
     std::filesystem::path checkpoint;   // file for checkpoints; empty: no checkpoints
     std::optional<Real> every;          // simulated time between two checkpoints [s]
     bool from_rest = false;             // true: the run starts from a static equilibrium

@@ -9,12 +9,13 @@ namespace skerry {
 
 namespace {
 
-// Smallest number of edges per radius of a contact area for which the mesh resolves the stress in the area. Below it
-// the stress is that of single nodes.
+// Smallest number of edges per radius of a contact area for which the mesh resolves the stress in the area. With fewer
+// edges the computed stress is that of single nodes.
 constexpr Real resolves_stress = 1;
-// Smallest number n of edges per radius of a contact area for which impacts are accepted. On a coarse mesh an impact
-// takes about 1.67 sqrt(n) times as long as by the theory of Hertz, because the stiffness of a single node does not
-// grow with the contact area. For n = 0.25 the factor is 1.67 sqrt(0.25) = 0.84; below it, impacts are too short.
+// Smallest number n of edges per radius of a contact area for which the duration of impacts is accepted. On a coarse
+// mesh an impact takes about 1.67 sqrt(n) times as long as by the theory of Hertz, because the stiffness of a single
+// node does not grow with the contact area. For n = 0.25 the factor is 1.67 sqrt(0.25) = 0.84; below it, impacts are
+// too short.
 constexpr Real resolves_impacts = 0.25;
 constexpr Real impact_duration = 1.67;
 

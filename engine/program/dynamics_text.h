@@ -14,10 +14,10 @@
 namespace skerry {
 
 /// Returns one text for each combination of chosen dynamics and reason. The text describes the first body with this
-/// choice and counts the other bodies.
+/// combination and counts the other bodies that have it.
 inline std::vector<std::string> choice_texts(const WorldReport& report) {
     std::vector<std::string> texts;
-    // First choice of each kind, and number of bodies with this kind of choice.
+    // First choice with each combination of dynamics and reason, and number of bodies with this combination.
     std::vector<std::pair<const DynamicsChoice*, std::size_t>> kinds;
     for (const DynamicsChoice& choice : report.dynamics_choices) {
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) {

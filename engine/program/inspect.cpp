@@ -24,8 +24,8 @@ namespace skerry {
 
 namespace {
 
-// A problem is reported if the explicit bodies with the smallest stable step need steps that are shorter by more than
-// this factor than those of all other explicit bodies.
+// A problem is reported if one kind of explicit bodies (see BodyKindReport) needs steps that are shorter by more than
+// this factor than the steps that every other kind needs.
 constexpr Real expensive_step_ratio = 4;
 constexpr std::size_t longest_list = 300;  // a list of names in a message ends once it is this long [characters]
 
@@ -133,7 +133,8 @@ struct SceneStart {
     std::string outcome;     // how a run resolves the overlaps, as text; empty if there are none
 };
 
-/// `as_written`: scene of the plan, built without resolving the overlaps at the start.
+/// Builds the scene as a run would start with it. `as_written`: scene of the plan, built without resolving the overlaps
+/// at the start.
 SceneStart start_of(const ScenePlan& plan, Scene as_written) {
     SceneStart start{std::move(as_written), {}, {}};
     start.as_written = start.scene.world.report();

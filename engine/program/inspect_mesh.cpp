@@ -20,9 +20,9 @@ namespace skerry {
 
 namespace {
 
-// Least ratio of the stable step without the worst tetrahedra to the stable step for which this step is printed. With a
-// smaller ratio, repairing these tetrahedra gains little. The ratio may be below 1: the neighbours of removed
-// tetrahedra lose mass.
+// The stable step without the worst tetrahedra is printed if it is at least this multiple of the stable step of the
+// whole mesh. Otherwise, repairing these tetrahedra gains little. The multiple may even be below 1, because the
+// neighbours of removed tetrahedra lose mass.
 constexpr Real least_gain = 1.1;
 
 }  // namespace
@@ -168,7 +168,8 @@ const char* advice_on(SurfaceFaultKind kind) {
     return "";
 }
 
-/// Describes a shell, for example "320 triangles from triangle 0, closed, 0.51 m^3, a void in shell 1".
+/// Describes a shell, a connected part of the surface, for example "320 triangles from triangle 0, closed, 0.51 m^3, a
+/// void in shell 1".
 std::string shell_text(const SurfaceReport& report, const SurfaceShell& shell) {
     std::string text = grouped(shell.triangles) + (shell.triangles == 1 ? " triangle" : " triangles") +
                        " from triangle " + std::to_string(shell.triangle) +

@@ -18,7 +18,7 @@ struct RepairTask {
 };
 
 /// Checks the options before any computation: the output file is a writable .msh file, it does not replace the input
-/// file without --overwrite, and skerry-fill exists. Throws SceneError otherwise.
+/// file without --overwrite, and skerry-fill, the program that fills surfaces, exists. Throws SceneError otherwise.
 void check_repair(const InspectOptions& options);
 
 /// Repairs the mesh, prints the properties of the old and the new mesh, and writes the new mesh if it is better.

@@ -17,7 +17,8 @@ struct OutputRequest {
     std::filesystem::path path;
     const Scene& scene;
     const RunOptions& options;
-    // Result of the run. When a writer is closed, only the entries of writers that are closed later are missing here.
+    // Result of the run. When a writer is closed, the result is complete except for the entries about writers that are
+    // closed later.
     const RunResult& result;
 };
 

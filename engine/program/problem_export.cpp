@@ -24,7 +24,8 @@ std::string numbered(const char* label, int digits, std::int64_t number) {
     return text;
 }
 
-/// Returns the interval [steps] at which a run of `steps` steps exports about `file_count` of them.
+/// Returns the number of steps from one exported step to the next, so that a run of `steps` steps exports about
+/// `file_count` of them.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
     // The upper limit is needed because `steps` may be infinite, which has no integer value.

@@ -9,7 +9,8 @@
 namespace skerry {
 
 /// Returns a writer for the contact problems of some steps of a run. `options` determines which steps, and whether a
-/// file holds a whole step or one region. Throws SceneError if the name of the scene cannot be used as a file name.
+/// file holds a whole step or one contact region. Throws SceneError if the name of the scene cannot be used as a file
+/// name.
 std::unique_ptr<Writer> exported_problems(const std::filesystem::path& folder, const Scene& scene,
                                           const RunOptions& options);
 

@@ -15,7 +15,8 @@ namespace skerry {
 namespace {
 
 constexpr double refresh_interval = 0.1;  // time between two updates of the bar [s]
-// wall time of the first line, and shortest time between two lines [s]; earlier, the time left cannot be estimated
+// wall time of the first line, and shortest time between two lines [s]; within a shorter time the time left cannot be
+// estimated
 constexpr double first_line = 1;
 constexpr double longest_silence = 600;       // longest time between two lines [s]
 constexpr int bar_width = 24;                 // [characters]

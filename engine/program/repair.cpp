@@ -16,7 +16,8 @@ namespace skerry {
 
 namespace {
 
-// Least ratio of the new to the old number of tetrahedra. With fewer tetrahedra the mesh would be coarser, not better.
+// Lower limit of the new number of tetrahedra, divided by the old number. A mesh with fewer tetrahedra could allow
+// longer steps only because it is coarser.
 constexpr Real least_count = 0.7;
 
 /// Returns the stable step of a body with this mesh [s], or 0 if the mesh is not valid for a body.

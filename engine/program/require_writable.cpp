@@ -55,7 +55,7 @@ void require_distinct(std::span<const NamedFile> files) {
                 continue;
             std::error_code error;
             const std::filesystem::file_status found = std::filesystem::status(files[i].file, error);
-            // a device such as /dev/null
+            // a device such as /dev/null may be named several times
             if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) continue;
             refuse_in(files[i].file.string(), files[i].name, {}, "the same file as " + std::string(files[k].name),
                       "a different file", "choose another file name");

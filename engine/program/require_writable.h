@@ -18,8 +18,8 @@ struct NamedFile {
     const char* name;
     std::filesystem::path file;
 };
-/// Throws SceneError, which names both files, if two of the files are the same, except for devices such as /dev/null.
-/// No output then replaces another output or an input.
+/// Throws SceneError if two of the files are the same, so that no output replaces another output or an input. The error
+/// names both files. Devices such as /dev/null may be named several times.
 void require_distinct(std::span<const NamedFile> files);
 
 }  // namespace skerry

@@ -40,7 +40,7 @@ const char* const advice =
 /// result.status. If a run stops within a call of advance(), no new checkpoint is written, because advance() divides
 /// its duration into equal steps, and a resumed run could not reproduce the remaining steps of that call.
 ///
-/// With several ranks all of them run this loop. The world is gathered for each sample, frame and checkpoint.
+/// With several ranks all of them run this loop. For each sample, frame and checkpoint the world is gathered on rank 0.
 class FrameLoop {
 public:
     /// Divides the world of the scene among the ranks. `outputs`: null on ranks other than 0.
@@ -204,7 +204,7 @@ void count_bodies(const World& world, RunResult& result) {
 /// bending. The text names the first body with this combination. Rigid bodies and bodies that hardly deformed in the
 /// run are left out.
 std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, std::span<const ErrorEstimate> errors) {
-    constexpr Real least_deformation = 0.01;  // least share of deformation in the motion of a reported body
+    constexpr Real least_deformation = 0.01;  // a body is reported if at least this share of its motion is deformation
     std::vector<std::string> found;
     std::set<std::tuple<std::size_t, std::size_t, std::vector<std::pair<int, std::size_t>>, ElementKind>> seen;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);
@@ -330,7 +330,7 @@ RunStart run_start(const RunBeginning& beginning, const World& world) {
 /// Collective. Copies from rank 0 to all other ranks: `beginning`, and the status, time of restart and wall time so far
 /// in `result`.
 void share_beginning(const RunRanks& ranks, RunBeginning& beginning, RunResult& result) {
-    const SignalGuard guard;  // else a signal would kill ranks that wait here while rank 0 finds an equilibrium
+    const SignalGuard guard;  // otherwise a signal would kill ranks that wait here while rank 0 finds an equilibrium
     const RunPlan& plan = beginning.plan;
     const Json first = ranks.of_first({{"memory", to_json(beginning.memory)},
                                        {"plan", {plan.seconds, plan.frame_step, plan.samples, plan.probe_step}},

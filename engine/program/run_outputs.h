@@ -14,8 +14,8 @@ namespace skerry {
 class RunOutputs {
 public:
     /// Opens the outputs that `options` request. Throws SceneError if an output cannot be written, or would replace
-    /// another output or an input. Later failures and the time spent are added to `result`. `options`, `scene` and
-    /// `result` must outlive the object.
+    /// another output or an input. Later failures, and the time spent on writing, are added to `result`. `options`,
+    /// `scene` and `result` must outlive the object.
     RunOutputs(const RunOptions& options, Scene& scene, const RunStart& start, RunResult& result);
 
     /// Passes the world to all outputs. Must be called after every call of World::advance.

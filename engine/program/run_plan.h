@@ -12,8 +12,8 @@ namespace skerry {
 /// left to simulate, or if there are too many frames.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if the earlier end of a resumed run, at `planned` seconds, lies within this frame, and the frame has another
-/// length in `run_plan`. The checkpoint may then lie within this frame, and not at its end.
+/// True if the interrupted run was to end within this frame, at the time `planned` [s], and the frame is longer or
+/// shorter in `run_plan`, the plan of the resumed run. The checkpoint may then be from a time within the frame.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

@@ -20,7 +20,7 @@ namespace skerry {
 struct BrokenTie {
     std::string name;
     std::size_t nodes = 0, broken = 0;          // numbers of tied nodes, and of those that have broken off
-    Real first_time = infinity, last_time = 0;  // times at which the first and the last of them broke off [s]
+    Real first_time = infinity, last_time = 0;  // times at which the first and the last node broke off [s]
     Real largest_force = 0;                     // largest magnitude of the tie's total force in a step [N]
 };
 
@@ -45,7 +45,7 @@ struct RunResult {
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
-    std::vector<ErrorEstimate> errors;  // by body; in a resumed run only for the part after the checkpoint
+    std::vector<ErrorEstimate> errors;  // estimates by body; in a resumed run for the part after the checkpoint
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
     std::vector<BrokenTie> broken_ties;
@@ -65,8 +65,8 @@ struct RunResult {
 /// several ranks all of them call this function. The result is complete on rank 0.
 RunResult simulate(const RunOptions& options, RunRanks& ranks);
 
-/// Returns the reasons not to rely on the run, one sentence each, with a remedy. Returns an empty list if there are
-/// none.
+/// Returns the reasons not to rely on the results of the run, one sentence with a remedy for each. Returns an empty
+/// list if there are none.
 std::vector<std::string> warnings_of(const RunResult& result);
 /// Returns the JSON document of --stats. Scripts rely on the names of its keys.
 Json statistics_of(const RunResult& result);

@@ -1,4 +1,4 @@
-// Figures of the time series of the probes of a run, for the table of a sweep.
+// Figures of the time series of the probes of a run: a few numbers for each time series, for the table of a sweep.
 #pragma once
 
 #include <string>

@@ -32,8 +32,8 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
 }
 
 /// Sorts all tetrahedra by the step that they allow, smallest first. Tetrahedra whose steps exceed the smallest one by
-/// less than 10 % are sorted by altitude instead: a bad tetrahedron also shortens the steps of its neighbours, because
-/// they share nodal masses, and only its small altitude shows that it is the bad one.
+/// less than 10 % are sorted by altitude instead: a badly shaped tetrahedron also shortens the steps of its neighbours,
+/// because they share nodal masses. Only its small altitude distinguishes it from them.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
     const Real least = about * *std::min_element(step.begin(), step.end());
@@ -75,8 +75,8 @@ Mesh without_tetrahedra(const Mesh& mesh, std::span<const Index> removed) {
 // Number of tetrahedra above which a mesh counts as large. It takes seconds to build another world with such a mesh.
 constexpr std::size_t many = 100'000;
 
-/// Ratio of the longest to the shortest step that the `count` worst tetrahedra allow. The worst tetrahedra are those
-/// with the shortest steps.
+/// Considers the `count` tetrahedra that allow the shortest steps. Returns the longest of these steps, divided by the
+/// shortest.
 Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     std::vector<Real> sorted(step.begin(), step.end());
     const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(count - 1);
@@ -84,14 +84,14 @@ Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
     return *last / *std::min_element(sorted.begin(), last + 1);
 }
 
-/// Computes, for each fraction in `fractions`, the stable step of the mesh without this fraction of its tetrahedra, the
-/// worst ones. A fraction is removed in several rounds, because each removal changes the nodal masses and so the
-/// ranking of the remaining tetrahedra. `step`: step that each tetrahedron allows [s]. `order`: result of
-/// worst_first().
+/// For each fraction in `fractions`, removes this fraction of the tetrahedra, the worst ones, and adds the stable step
+/// of the remaining mesh to bound.without. A fraction is removed in several rounds, because each removal changes the
+/// nodal masses and so the ranking of the remaining tetrahedra. `step`: step that each tetrahedron allows [s]. `order`:
+/// result of worst_first().
 void find_steps_without(const Mesh& mesh, const BodyCase& body_case, std::span<const Real> step,
                         std::vector<Index> order, StepBound& bound) {
-    // In a large mesh, a fraction of tetrahedra is not removed if the ratio of its longest to its shortest step is
-    // below this value: removal gains little.
+    // In a large mesh, a fraction of the tetrahedra is skipped if the longest step that they allow is less than this
+    // multiple of the shortest one. Their removal would then gain little.
     constexpr Real least_ratio = 1.5;
     const bool large = mesh.tetrahedra.size() > many;
     // number of rounds for each fraction; a large mesh takes seconds per round

@@ -37,9 +37,9 @@ struct StepBound {
     // smallest one by less than 10 % are sorted by altitude.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // In a mesh of more than 100,000 tetrahedra, `without` skips fractions of worst tetrahedra whose steps are too
-    // similar, to save time. alike_share is the largest fraction skipped, and alike_ratio the ratio of the longest to
-    // the shortest step in it. Both are 0 if nothing was skipped.
+    // In a mesh of more than 100,000 tetrahedra, a fraction is left out of `without`, to save time, if all its
+    // tetrahedra allow similar steps. alike_share: largest fraction that was left out. alike_ratio: longest step that
+    // its tetrahedra allow, divided by the shortest one. Both are 0 if no fraction was left out.
     Real alike_share = 0;
     Real alike_ratio = 0;
 };

@@ -14,13 +14,14 @@ namespace {
 
 // Number of steps below which a run needs no note. With a few hundred tetrahedra these steps take about a minute.
 constexpr double few_steps = 1e5;
-// A note is given if the steps would be longer by more than this factor without the stiff bodies.
+// A note is given if the steps would be longer by more than this factor without their cause: stiff bodies, or forces on
+// a body. A tetrahedron counts as bad if its step is shorter than the median by more than this factor.
 constexpr Real much_longer = 4;
 // Longest step by default in a world of rigid and implicit bodies (Settings::step_size) [s].
 constexpr Real usual_step = 1.0 / 120;
 
-/// Stiff bodies: the explicit ones whose stable steps are less than `much_longer` times the shortest. Bodies with
-/// automatic dynamics are not among them, because the engine has chosen their dynamics.
+/// Stiff bodies are the explicit bodies whose stable step is less than `much_longer` times the shortest one. Bodies
+/// with automatic dynamics do not count, because the engine itself has chosen explicit dynamics for them.
 struct ShortSteps {
     std::size_t first = 0;  // index in ScenePlan::bodies of the body with the shortest step
     std::size_t count = 0;  // number of stiff bodies
@@ -51,7 +52,8 @@ ShortSteps short_steps(const ScenePlan& plan, const World& world) {
     return stiff;
 }
 
-/// Number of tetrahedra whose steps are less than 1 / `much_longer` of the median.
+/// Number of tetrahedra that allow less than 1 / `much_longer` of the median step. `step`: step that each tetrahedron
+/// allows.
 std::size_t count_bad(std::vector<Real> step) {
     const auto middle = step.begin() + static_cast<std::ptrdiff_t>(step.size() / 2);
     std::ranges::nth_element(step, middle);

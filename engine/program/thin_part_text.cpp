@@ -11,8 +11,8 @@ namespace skerry {
 
 namespace {
 
-// A part is reported if it is stiffer in bending than the material by this factor. With smoothed elements in cubic
-// cells the factor is 1.08 to 1.17 for two layers of cells, and 1.3 to 1.5 for one layer.
+// A part is reported if it is stiffer in bending than the material by at least this factor. With smoothed elements in
+// cubic cells the factor is 1.08 to 1.17 for two layers of cells, and 1.3 to 1.5 for one layer.
 constexpr Real reported_stiffness = 1.25;
 // With cells of the recommended size, the bending stiffness exceeds that of the material by this fraction.
 constexpr Real accepted_excess = 0.1;
@@ -36,7 +36,7 @@ std::string coordinate(Real value, const mesh::ThinPart& part) {
 }
 
 /// Least Poisson ratio at which elements of a kind are more than twice as stiff in bending as their material
-/// (docs/methods/elasticity.md 7.3). A value of 0.5 means never.
+/// (docs/methods/elasticity.md 7.3). Elements with the value 0.5 never lock, because Poisson ratios are below 0.5.
 Real locks_from(ElementKind kind) {
     return kind == ElementKind::linear ? 0.45 : kind == ElementKind::edge_smoothed ? 0.49 : 0.5;
 }

@@ -9,10 +9,10 @@
 
 namespace skerry {
 
-/// Describes the thin part of a body with the largest excess of bending stiffness over that of its material, counts the
-/// other parts that are too stiff, and gives a remedy. If no thin part is too stiff, names a kind of elements of the
-/// body that lock, because the material is nearly incompressible. Otherwise returns an empty text. `boundary` lists the
-/// boundary triangles of the mesh.
+/// Returns a text about the thin part of a body that is stiffest in bending compared to its material. The text also
+/// counts the other parts that are too stiff, and gives a remedy. If no part is too stiff, but elements of the body
+/// lock (are far too stiff, because the material is nearly incompressible), the text names their kind. Otherwise it is
+/// empty. `boundary`: boundary triangles of the mesh.
 std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const BodyCase& body_case);
 
 }  // namespace skerry

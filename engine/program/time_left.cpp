@@ -7,8 +7,8 @@
 namespace skerry {
 
 void TimeLeft::reach(double wall, double time) {
-    // Old samples are thinned out: the wall time grows by at least this factor over two intervals between stored
-    // samples. The smaller the factor, the more accurately the last half of the wall time is found.
+    // Least factor by which the wall time grows over two intervals between stored samples; samples in between are
+    // dropped. The smaller the factor, the more accurately estimate() finds the sample at half of the wall time.
     constexpr double growth = 1.05;
     const std::size_t count = samples_.size();
     if (count > 1 && wall < growth * samples_[count - 2].wall)

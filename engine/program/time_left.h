@@ -28,7 +28,8 @@ private:
     double estimate_from(const Sample& before) const;
 
     double end_;
-    // wall times grow by 5 % or more over two intervals; the last entry is the present state
+    // the last entry is the present state; in the others the wall time grows by 5 % or more over two intervals, so that
+    // a long run needs few entries
     std::vector<Sample> samples_;
 };
 

@@ -11,8 +11,8 @@ namespace skerry {
 
 namespace {
 
-// CPU time after which a trial ends [s]. It is short because a person waits, but most scenes have their first impacts
-// within it.
+// CPU time after which a trial ends [s]. It is short because a person waits, but long enough for the first impacts of
+// most scenes.
 constexpr double longest_trial = 3;
 
 /// Runs the trial and sets the measured and estimated costs.

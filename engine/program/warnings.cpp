@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Adds warnings about overlaps at the start. Returns true if these overlaps may have caused the later errors.
+/// Adds warnings about overlaps at the start. Returns true if these overlaps may have caused errors later in the run.
 bool warn_of_start(const RunResult& result, std::vector<std::string>& warnings) {
     const WorldReport& r = result.report;
     constexpr std::size_t most_named = 5;

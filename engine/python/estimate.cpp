@@ -9,7 +9,7 @@ namespace skerry::python {
 
 namespace {
 
-/// Columns by name, each with one value for each body.
+/// Returns the estimates as columns by name. Each column has one value for each body.
 nb::dict table_of(const ErrorEstimator& estimator) {
     using Column = std::pair<const char*, Real ErrorEstimate::*>;
     constexpr std::array<Column, 12> columns{{{"mesh", &ErrorEstimate::mesh},

@@ -53,7 +53,7 @@ nb::dict values_of(const JointSettings& settings);
 nb::dict values_of(const PipeSettings& settings);
 nb::dict values_of(const AnyLoad& settings);
 
-/// The Python object of a shape or of settings: an instance of its dataclass.
+/// Returns the Python object of a shape or of settings: an instance of its dataclass.
 nb::object object_of(const Shape& shape);
 nb::object object_of(const Pose& pose);
 nb::object object_of(const JointMotor& motor);
@@ -61,7 +61,7 @@ nb::object object_of(const JointPassive& passive);
 nb::object object_of(const SurfaceSettings& surface);
 nb::object object_of(const GasFilling& gas);
 nb::object object_of(const LiquidFilling& liquid);
-/// The pairs (time, value) of a table.
+/// Returns the pairs (time, value) of a table.
 nb::object object_of(const TimeTable& table);
 
 }  // namespace skerry::python

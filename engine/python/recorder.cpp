@@ -166,7 +166,7 @@ nb::list columns_of(const Recorder& recorder) {
     return columns;
 }
 
-/// All rows of numbers, one after the other in a flat array. Python gives it the shape (rows, columns).
+/// Returns all rows of numbers, one after the other in a flat array. Python gives the array the shape (rows, columns).
 nb::ndarray<nb::numpy, Real> table_of(const Recorder& recorder) {
     std::vector<Real> values;
     values.reserve(recorder.row_count() * recorder.columns().size());

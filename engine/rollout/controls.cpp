@@ -66,7 +66,8 @@ ControlledObject object_of(const RolloutControl& control) {
         control.what);
 }
 
-/// For each kind of control: the words before the object's name in its title, and the number of values per interval.
+/// For each kind of control: the words of its title in front of the name of the object, and the number of values per
+/// interval.
 struct ControlKind {
     const char* title;
     std::size_t count;

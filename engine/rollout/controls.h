@@ -34,8 +34,8 @@ void start_target(World& world, const Slider& slider, const SliderTarget& target
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.
 std::size_t number_count(const World& world, const RolloutControl& control);
-/// Returns count_in(world), which must be equal for all worlds. If a world's number differs from that of the first
-/// world, or if count_in() throws SceneError, throws SceneError that names this world. `title`: name of the number in
+/// Returns count_in(world), which must be equal for all worlds. Throws SceneError that names a world if its number
+/// differs from that of the first world, or if count_in() throws SceneError for it. `title`: name of the number in
 /// messages.
 std::size_t agreed_count(std::span<const World* const> worlds, const std::string& title,
                          FunctionRef<std::size_t(const World&)> count_in);

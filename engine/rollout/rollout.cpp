@@ -19,7 +19,7 @@ namespace skerry {
 
 namespace {
 
-// Time between two calls of RolloutSettings::go_on. It lets a program react to Ctrl-C within 50 ms.
+// Time between two calls of RolloutSettings::go_on. It is short, so that a program can react to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
 void check_settings(std::size_t world_count, const RolloutSettings& settings) {

@@ -14,7 +14,8 @@ namespace skerry {
 
 namespace {
 
-/// Unit of the quantity that a control sets. unit_of() excludes PoseControl; its operator exists only for std::visit().
+/// Unit of the quantity that a control sets. unit_of() is not called for a PoseControl; the operator for it exists only
+/// because std::visit() needs one.
 struct UnitOfControl {
     const Model& model;
 
@@ -51,8 +52,8 @@ JointDrive motor_drive(const Model& model, JointHandle joint) {
     return drive;
 }
 
-/// Present time course of the quantity that a control sets. course_of() excludes PoseControl; its operator exists only
-/// for std::visit().
+/// Present time course of the quantity that a control sets. course_of() is not called for a PoseControl; the operator
+/// for it exists only because std::visit() needs one.
 struct CourseOfControl {
     const Model& model;
 
@@ -89,7 +90,8 @@ Real value_of(const World& world, const Slider& slider, const SliderTarget& targ
     return slider.along.dot(now.position - target.start.position) + slider.about.dot(rotation_vector(rotation));
 }
 
-/// Drives one target of a slider so that the value of the slider follows `values`. After its end the last value stays.
+/// Drives one target of a slider so that the value of the slider follows `values`. After the last time of `values` the
+/// last value stays.
 struct FollowCourse {
     World& world;
     const Slider& slider;

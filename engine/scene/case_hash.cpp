@@ -60,7 +60,7 @@ std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     if (file.extension() == ".json") {
         try {
             add_files(read_json(file), file, hash);
-        } catch (const SceneError&) {  // the case is refused with this error when it runs
+        } catch (const SceneError&) {  // ignored here, because the run of the case reports this error
         }
     }
     return files_[file] = hash.value();

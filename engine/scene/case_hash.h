@@ -14,14 +14,15 @@ namespace skerry {
 
 class Hash;
 
-/// Computes hashes of the cases of one scene. A case is the scene with a list of assignments. Its hash covers the scene
-/// after the assignments, and all scene and mesh files that the scene names. Each file is read once.
+/// Computes hashes of the cases of one scene. A case is the scene, changed by a list of assignments (assign.h). Its
+/// hash covers the changed scene and all scene and mesh files that the scene names. An unchanged hash shows that an
+/// earlier result of the case is still valid. Each file is read once.
 class CaseHasher {
 public:
     /// Throws SceneError if the scene file cannot be read.
     explicit CaseHasher(const std::filesystem::path& scene);
     /// Returns the hash of a case as "0x" and 16 hexadecimal digits. If an assignment is refused, the hash also covers
-    /// the text of all assignments.
+    /// the text of all assignments, so that it still differs from the hashes of other cases.
     std::string hash(std::span<const std::string> assignments);
     const Json& scene() const { return scene_; }
     /// Returns the files that hash() has read so far: included scenes, meshes and surfaces, without the scene itself.

@@ -1,4 +1,4 @@
-// Keys of fibres in a scene file. Resolves the names of their body, set of tetrahedra and array of directions.
+// Keys of fibres in a scene file. Finds the body, the set of tetrahedra and the array of directions that they name.
 #include <algorithm>
 
 #include "engine/mesh/sets.h"

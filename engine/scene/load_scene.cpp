@@ -222,7 +222,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
 
 std::vector<BodyHandle> bodies_in_order(const World& world) {
     std::vector<BodyHandle> bodies = world.bodies();
-    std::ranges::sort(bodies, {}, &BodyHandle::slot);  // if none was removed, slots ascend in the order of adding
+    std::ranges::sort(bodies, {}, &BodyHandle::slot);  // slots ascend in the order of adding, as no body was removed
     return bodies;
 }
 

@@ -9,7 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Number of times that the edge length of a mesh can be doubled while its numbers of cells stay whole.
+/// Number of times that the edge length of a mesh can be doubled while its numbers of cells stay whole. A mesh from a
+/// file or a filled surface has no such numbers; for it only the general limit applies.
 int halvings_of(const MeshEntry& mesh) {
     const auto of_cells = [](int cells) { return std::countr_zero(static_cast<unsigned>(cells)); };
     if (mesh.box) {
@@ -17,7 +18,8 @@ int halvings_of(const MeshEntry& mesh) {
         return std::min({of_cells(cells[0]), of_cells(cells[1]), of_cells(cells[2])});
     }
     if (mesh.table) return of_cells(mesh.table->cells_per_leg);
-    // Odd numbers of elements across a round shape are rounded up. All numbers must stay even, which costs one halving.
+    // The number of elements across a round shape is even: an odd number is rounded up. It must still be even after the
+    // last halving, so one halving less is possible.
     const auto of_round = [&](int resolution) { return of_cells(resolution + resolution % 2) - 1; };
     if (mesh.ball) return of_round(mesh.ball->resolution);
     if (mesh.cylinder) return of_round(mesh.cylinder->resolution);
@@ -111,8 +113,8 @@ private:
     std::optional<Place> found_;
 };
 
-/// Reason why the key `refine` of a mesh cannot have this value; empty if it can. `parts`: entries that name parts of
-/// the body's mesh; nullptr for a collider. `rigid`: true for rigid bodies and colliders.
+/// Reason why the key `refine` of a mesh cannot have this value; empty if it can. `parts`: finds the entries that name
+/// parts of the body's mesh; nullptr for a collider. `rigid`: true for rigid bodies and colliders.
 std::string why_not(const MeshEntry& mesh, int refine, bool rigid, NamedParts* parts) {
     if (std::abs(refine) > most_refinements)
         return "values are limited to " + std::to_string(most_refinements) + " refinements";

@@ -14,7 +14,8 @@ namespace skerry {
 inline constexpr int most_refinements = 6;
 
 /// A mesh whose refinement changes the results of a scene: the mesh of a deformable body, or a curved built-in shape of
-/// a rigid body or a collider. Level 0 is the mesh in the scene file; at level n the edges are 2^-n times as long.
+/// a rigid body or a collider. Level 0 is the mesh as the scene file gives it. At level n the edges are 2^-n times as
+/// long.
 struct MeshLevels {
     Place place;                    // place of the mesh entry
     int refine = 0;                 // value of the key `refine` in the scene file
@@ -26,8 +27,8 @@ struct MeshLevels {
 struct SceneLevels {
     std::vector<MeshLevels> meshes{};
     // Lowest and highest level that all meshes have; 0 if there are no meshes. A mesh file, or a surface that is filled
-    // without `edge`, has no coarser level. A coarser level of another filled surface may still be refused when the
-    // scene is read, if no mesher can fill it.
+    // without `edge`, has no level below 0. A surface with `edge` has such levels, but reading the scene fails if no
+    // mesher can fill the surface so coarsely.
     int coarsest = 0, finest = 0;
     std::string why_not_coarser{}, why_not_finer{};  // reasons, each with the place of the mesh
 

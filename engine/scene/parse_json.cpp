@@ -75,7 +75,7 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            // put() has already appended the next open level to its list, so size() counts it; the index is one less
+            // a list or object that is open inside of this list is already its last item, with the index size() - 1
             const std::size_t begun = i + 1 < open_.size() ? 1 : 0;
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);

@@ -19,21 +19,21 @@ class Place {
 public:
     Place() = default;
     explicit Place(const std::filesystem::path& file) : Place(file, file.parent_path()) {}
-    /// Relative paths in the file start at `folder`.
+    /// `folder`: folder in which relative paths in the file start.
     Place(std::filesystem::path file, std::filesystem::path folder)
         : file_(std::move(file)), folder_(std::move(folder)) {}
 
     Place key(std::string_view name) const;
     Place item(std::size_t index) const;
-    /// Returns this location with the name of its object, such as: body "ball".
+    /// Returns this location together with the name of its object for error messages, such as: body "ball".
     Place of(std::string object) const;
 
     const std::filesystem::path& file() const { return file_; }
     const std::filesystem::path& folder() const { return folder_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Throws the error of an inner function that knows neither the file nor the key, with this location added in
-    /// front.
+    /// Throws the error `inner` again, with this location in front. For errors of functions that know neither the file
+    /// nor the key.
     [[noreturn]] void refuse_inner(const SceneError& inner) const;
 
 private:

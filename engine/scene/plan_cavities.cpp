@@ -1,4 +1,4 @@
-// Resolves the names of bodies and cavities in cavities and pipes, and adds cavities and pipes to a world.
+// Finds the bodies and cavities that the entries of cavities and pipes name, and adds cavities and pipes to a world.
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {

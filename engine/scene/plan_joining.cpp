@@ -1,4 +1,5 @@
-// Resolves the names in ties, cables, springs and their anchors, and converts points of anchors to world coordinates.
+// Finds the objects that ties, cables, springs and their anchors name, and converts points of anchors to world
+// coordinates.
 #include "engine/scene/scene_plan.h"
 #include "systems/geometry/rotation.h"
 

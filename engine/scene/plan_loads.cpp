@@ -1,4 +1,4 @@
-// Resolves the names of bodies and the parts of bodies that loads use.
+// Finds the bodies and the parts of bodies on which loads act.
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {

@@ -1,4 +1,4 @@
-// Resolves the names of the bodies, colliders, joints and other objects that probes use.
+// Finds the bodies, colliders, joints and other objects that probes name.
 #include <algorithm>
 
 #include "engine/scene/scene_plan.h"
@@ -7,8 +7,9 @@ namespace skerry {
 
 namespace {
 
-/// Finds the body or collider `entry.by` that exerts the measured force. Only bodies exert forces on a collider. Throws
-/// SceneError if no object has this name, or if a body and a collider both have it.
+/// Finds the body or collider `entry.by` that exerts the measured force. For the force on a collider only bodies are
+/// searched, because only they exert forces on it. Throws SceneError if no object has this name, or if a body and a
+/// collider both have it.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
     const Place place = entry.place.key("by");
     const auto index_in = [&](const std::vector<std::string_view>& names) -> std::optional<std::size_t> {
@@ -42,8 +43,8 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
         lower = lower.cwiseMin(node);
         upper = upper.cwiseMax(node);
     }
-    // Largest distance of the point of a probe from the mesh, as a fraction of the diagonal of the bounding box. It
-    // allows for rounding and for flat facets of the meshes of round shapes.
+    // Largest allowed distance of the point of a probe from the mesh, as a fraction of the diagonal of the bounding
+    // box. Rounding can put a point outside of the mesh, and so can the flat facets of the mesh of a round shape.
     constexpr Real reach = 0.01;
     const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
     if (found) return *found;

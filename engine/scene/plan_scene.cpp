@@ -73,8 +73,8 @@ SurfacePlan plan_surface(const SurfaceEntry& entry, const PlannedMesh& mesh,
                                      .direction = entry.direction},
                         .place = entry.place};
     if (entry.set) {
-        // The nodes are set in addition to the faces, because a listed node belongs to the surface set even without a
-        // face whose nodes are all listed.
+        // The nodes are given in addition to the faces: a listed node belongs to the surface set even if it has no face
+        // whose nodes are all listed.
         const MeshSet& set = find_set(*entry.set, mesh, sets, entry.place.key("set"));
         surface.settings.nodes = set.nodes;
         surface.settings.faces = faces_of(set, mesh);
@@ -152,7 +152,8 @@ struct PlannedBodies {
     const SurfaceFilling& filling;
 };
 
-/// Adds the mesh of a body to plan.meshes, unless an equal entry for a mesh file has added it. Returns its index.
+/// Adds the mesh of a body to plan.meshes, unless another body with an equal entry for a file has already added it.
+/// Returns the index of the mesh.
 std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t next = plan.meshes.size();
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
@@ -217,7 +218,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
         // The engine does not choose the dynamics of bodies with pinned nodes: World::attach() makes such a body
-        // explicit. The plan says so, so that stiff_note() can propose implicit dynamics.
+        // explicit. The plan then has explicit dynamics too, and stiff_note() can propose implicit dynamics.
         body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !planned.pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;
@@ -325,8 +326,8 @@ std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan) {
 
 namespace {
 
-/// Adds a note if a joint does not start at the coordinate that its MimicEntry prescribes: ratio * (coordinate of the
-/// leader) + offset.
+/// Adds a note if a joint does not start at the coordinate that its MimicEntry prescribes: ratio * (start coordinate of
+/// the joint that it follows) + offset.
 void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
     const JointPlan& leader = plan.joints[leader_of(joint, plan)];
     const Real found = joint.settings.coordinate,

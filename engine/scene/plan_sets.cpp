@@ -63,8 +63,9 @@ std::vector<std::array<Index, 3>> surface_faces(const Mesh& mesh) {
     return surface;
 }
 
-/// The set to which the other conditions of an entry are then applied: the union of the sets that it names, or all
-/// nodes if it names none. With a label: only the tetrahedra with this label, within this union or in the whole mesh.
+/// First part of plan_set(): the union of the sets that an entry names, or all nodes if it names none. With a label:
+/// only the tetrahedra with this label, within this union or in the whole mesh. plan_set() then applies the other
+/// conditions.
 MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set;
     for (const std::string& name : entry.set.items) {

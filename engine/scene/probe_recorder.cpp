@@ -16,8 +16,9 @@ struct Sample {
     Real slip = 0;  // slip speeds of the contacts: first their sum, later their mean [m/s]
 };
 
-/// True if the contact acts on a node of the probe. Positive weights of a contact belong to nodes of its first object,
-/// negative ones to its second. `inside`: for each node of `body`, nonzero if the node belongs to the probe.
+/// True if the contact acts on a node of the probe. The relative velocity of a contact is a weighted sum of nodal
+/// velocities: the weights of nodes of the first object are positive, and those of the second object are negative.
+/// `inside`: for each node of `body`, nonzero if the node belongs to the probe.
 bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
     for (std::size_t a = 0; a < 4; ++a) {
         const bool ours =
@@ -27,7 +28,7 @@ bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& i
     return false;
 }
 
-/// Returns the largest von Mises stress of the entries of `stress` with the indices `nodes` [Pa].
+/// Returns the largest von Mises stress at some nodes [Pa]. `nodes`: indices of their stresses in `stress`.
 Real largest_von_mises(std::span<const Mat3> stress, std::span<const std::size_t> nodes) {
     Real largest = 0;
     for (const std::size_t n : nodes) largest = std::max(largest, von_mises(stress[n]));

@@ -14,7 +14,7 @@ struct ProbeRecord {
     std::string name;
     Real stick_time = 0, slide_time = 0, open_time = 0;  // time of sticking, of sliding and without contact [s]
     Real slide_alone_time = 0;           // time during which this probe slides and no other probe does [s]
-    int changes = 0;                     // changes between sticking and sliding, also across a time without contact
+    int changes = 0;                     // changes between sticking and sliding, also with an open time in between
     Real max_slip = 0;                   // largest value of `slip` [m/s]
     Real slip_distance = 0;              // time integral of `slip` [m]
     Real max_von_mises = 0;              // largest value of `von_mises` [Pa]

@@ -30,7 +30,8 @@ constexpr Limits within(Real lower, Real upper) {
     return {.at_least = lower, .above = {}, .at_most = upper, .below = {}};
 }
 
-/// Documentation of a key in a scene file. The texts must exist until the program ends.
+/// Documentation of a key in a scene file. Only views of the texts are stored, so the texts must exist until the
+/// program ends.
 struct KeyDoc {
     std::string_view meaning;
     std::string_view unit = {};   // SI unit
@@ -131,8 +132,9 @@ public:
         add_key(name, doc, member_offset(static_cast<V T::*>(member)), {read_value<V>, Value<V>::schema});
         return *this;
     }
-    /// Adds a key whose value sets all members of the object. Keys are read in the order in which they were added, so
-    /// keys that are added later can replace single members. Value<Preset> reads the value into an object of type T.
+    /// Adds a key whose value can set all members of the object, such as the name of a material to copy. Keys are read
+    /// in the order in which they were added, so keys that are added later can replace single members. Value<Preset>
+    /// reads the value into an object of type T.
     template <class Preset>
     Rule& preset(std::string_view name, const KeyDoc& doc) {
         add_key(name, doc, 0, {read_preset<Preset>, Value<Preset>::schema});

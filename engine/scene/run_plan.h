@@ -1,4 +1,5 @@
-// Plan of a run: its division into frames, the division of frames into calls of advance, and an estimate of the steps.
+// Plan of a run: its division into frames, the division of each frame into calls of World::advance, and an estimate of
+// the number of steps.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +11,12 @@
 namespace skerry {
 
 struct RunPlan {
-    // Tolerance for rounding when a run is divided into frames, as a fraction of a frame: 0.1 s must give six frames of
-    // 1/60 s, not seven.
+    // Tolerance for rounding when a run is divided into frames, as a fraction of `frame_step`: 0.1 s must give six
+    // frames of 1/60 s, not seven.
     static constexpr double slack = 1e-9;
 
     double seconds = 0, frame_step = 0;  // duration of the run, and time between two frames [s]
-    int samples = 1;                     // largest number of calls of advance per frame
+    int samples = 1;                     // largest number of calls of World::advance per frame
     double probe_step = 0;               // time between two samples of the probes; 0: there are no probes [s]
 
     long frames() const;
@@ -23,20 +24,20 @@ struct RunPlan {
     /// call of advance in a frame of full length ends with a sample of the probes.
     bool even() const;
     /// Returns the times at which the calls of advance in a frame end [s]: multiples of probe_step, then the end of the
-    /// frame. Returns nothing for a frame that is divided into `samples` calls of equal length.
+    /// frame. Returns an empty list if the frame is divided into `samples` calls of equal length.
     std::vector<double> ends_in(long frame) const;
-    /// Returns the simulated time between the previous frame and this one [s]. The last frame may be shorter than the
-    /// others.
+    /// Returns the length of a frame: the simulated time since the previous frame [s]. The last frame may be shorter
+    /// than the others.
     double length_of(long frame) const;
     /// Longest simulated time of a call of advance [s].
     double longest_call() const;
-    /// Returns an upper bound of the step length in the present state of the world [s]. A step is never longer than a
-    /// call of advance.
+    /// Returns an upper bound of the step length in the present state of the world [s]: the shortest of the stable
+    /// step, the step size of the settings and the longest call of advance.
     double longest_step(const World& world) const;
     /// Throws SceneError if there are more than 1e9 frames. `file`: scene file, for the message.
     void require_countable(const std::filesystem::path& file) const;
-    /// Estimates the number of remaining steps. Each call of advance takes a whole number of equal steps, none longer
-    /// than longest_step().
+    /// Estimates the number of remaining steps. Each call of advance is divided into equal steps, none longer than
+    /// longest_step().
     double steps(const World& world) const;
 };
 

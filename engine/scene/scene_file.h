@@ -52,12 +52,12 @@ struct MeshEntry {
     std::optional<SkittleMesh> skittle;
     std::optional<mesh::TableShape> table;
     std::optional<FilePath> file;
-    std::optional<FilePath> surface;  // surface that is filled with tetrahedra; the next three members control this
+    std::optional<FilePath> surface;  // surface to fill with tetrahedra, controlled by the next three members
     std::optional<Real> edge;
     std::optional<Real> tolerance;
     bool cavities = false;
     Real scale = 1;
-    int refine = 0;  // > 0: number of times that the edges are halved; < 0: doubled
+    int refine = 0;  // n > 0: the edges are halved n times; n < 0: they are doubled -n times
     Place place;
 };
 
@@ -190,7 +190,7 @@ struct ColliderEntry {
 /// A point that is fixed to a body, to a collider, or to the world.
 struct AnchorEntry {
     std::optional<std::string> body, collider;
-    Vec3 point = Vec3::Zero();  // in the own frame of the mesh or collider; without both, in the world [m]
+    Vec3 point = Vec3::Zero();  // in the frame of the mesh or collider; in the world if neither is given [m]
     Place place;
 };
 /// Surface properties of contacts between two materials.
@@ -253,7 +253,8 @@ struct CableEntry {
     Real friction = CableSettings{}.friction;
     Place place;
 };
-/// A cavity of a body. If neither `set`, `box` nor `nodes` is given, it has the default faces of CavitySettings::faces.
+/// A cavity of a body. If none of `set`, `box` and `nodes` is given, the cavity has the default faces that
+/// CavitySettings::faces describes.
 struct CavityEntry : PartEntry {
     std::string name;
     std::string body;
@@ -346,10 +347,11 @@ struct SliderEntry {
     Place place;
 };
 
-/// A scene file that a scene includes. Without a name, its objects keep their names and poses.
+/// A scene file that a scene includes. An entry that consists only of a path has no name. Its objects then keep their
+/// names and poses.
 struct IncludeEntry {
     FilePath scene;
-    std::string name;              // prefix of the names of all objects: NAME/OBJECT
+    std::string name;              // prefix of all names: NAME/OBJECT, and NAME_PROBE for probes
     Vec3 position = Vec3::Zero();  // origin of the frame of the included scene [m]
     Rotation rotation;
     Place place;

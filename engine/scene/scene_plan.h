@@ -1,4 +1,5 @@
-// A scene in which meshes are read, copies placed and names resolved. It is ready to be added to a world.
+// Plan of a scene: its meshes are read, its copies are placed, and most names are replaced by indices. A world can be
+// built from the plan without reading any file.
 #pragma once
 
 #include <array>
@@ -27,8 +28,8 @@
 
 namespace skerry {
 
-/// A mesh, and the subdivisions that made it. Node numbers in the scene file refer to the mesh before these
-/// subdivisions.
+/// A mesh, and the subdivisions that made it, in their order. Node numbers in the scene file refer to the mesh before
+/// the first subdivision.
 struct PlannedMesh : Mesh {
     std::vector<mesh::Subdivision> subdivisions{};
 };
@@ -70,7 +71,7 @@ struct PairPlan {
 };
 struct AnchorPlan {
     std::optional<std::size_t> body{}, collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
-    // Position in the own frame of the body's mesh or of the collider; if both are empty: in the world [m].
+    // Position in the frame of the body's mesh or of the collider; in the world if there is neither [m].
     Vec3 point = Vec3::Zero();
 };
 struct JointPlan {
@@ -91,7 +92,7 @@ struct TiePlan {
 struct CablePlan {
     std::string name;
     std::vector<AnchorPlan> points{};
-    CableSettings settings{};  // settings without points
+    CableSettings settings{};  // settings without points, because handles exist only in a built world
     Place place{};
 };
 struct CavityPlan {
@@ -104,7 +105,7 @@ struct PipePlan {
     std::string name;
     std::size_t first = 0;                // index in ScenePlan::cavities
     std::optional<std::size_t> second{};  // index in ScenePlan::cavities
-    PipeSettings settings;                // settings without handles of cavities
+    PipeSettings settings;                // settings without handles, because handles exist only in a built world
     Place place;
 };
 struct LoadPlan {
@@ -159,7 +160,8 @@ struct ScenePlan {
     Settings settings;
     Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
-    // meshes of the bodies; copies of a body share one mesh, and so do bodies that use a file with equal settings
+    // meshes of the bodies; copies of a body share one mesh, and so do bodies that use the same file with equal
+    // settings
     std::vector<PlannedMesh> meshes;
     std::vector<std::filesystem::path> mesh_files;  // for each mesh: file of the mesh or surface, or empty
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
@@ -193,15 +195,17 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
 /// Returns for each copy of a body the position of the origin of its mesh [m].
 std::vector<Vec3> positions_of(const BodyEntry& entry);
 
-/// nodes_of() returns the node numbers of a part of a body: in ascending order, or in the order of a list in the scene.
-/// faces_of() returns faces oriented as on the surface: the listed ones, and those whose nodes or tetrahedron are
-/// listed. Both functions throw SceneError if the entry names no part, an unknown set, or a part without nodes or
-/// faces. The message lists the existing sets.
+/// nodes_of() returns the node numbers of a part of a body: in the order of the scene file if it lists the nodes,
+/// otherwise in ascending order. faces_of() returns the faces that the part lists, the surface triangles whose nodes
+/// are all in the part, and those of its tetrahedra, all oriented as on the surface. Both functions throw SceneError if
+/// the entry names no part, an unknown set, or a part without nodes or faces. For an unknown set the message lists the
+/// existing sets.
 std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
-/// Faces of a set: the listed ones, and the surface triangles whose nodes or whose tetrahedron are listed.
+/// Faces of a set: the listed faces, the surface triangles whose nodes are all listed, and the surface triangles of
+/// listed tetrahedra.
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh);
-/// Returns the node numbers of a part while the plan of its body is being made. `sets`: BodyPlan::sets.
+/// Returns the node numbers of a part of a body whose plan is not complete yet. `sets`: BodyPlan::sets.
 std::vector<Index> nodes_of(const PartEntry& part, const PlannedMesh& mesh, const std::map<std::string, MeshSet>& sets);
 
 /// Returns the set with this name: from `sets`, or else from Mesh::sets. Throws SceneError if neither has it.
@@ -209,10 +213,10 @@ const MeshSet& find_set(const std::string& name, const Mesh& mesh, const std::ma
                         const Place& place);
 /// Text for the part "expected" of an error message about a missing set: lists the existing sets.
 std::string expected_set(const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
-/// Resolves the sets of a body in a scene file.
+/// Finds the nodes, faces and tetrahedra of the sets that a scene file defines for a body.
 std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const PlannedMesh& mesh, const Place& place);
 
-/// Names of objects of a plan, for example of all joints. They are valid until the list of objects changes.
+/// Names of the objects in a list of a plan, for example of all joints. The views are valid until the list changes.
 template <class Object>
 std::vector<std::string_view> names_of(const std::vector<Object>& objects) {
     std::vector<std::string_view> names;
@@ -235,7 +239,8 @@ std::string choose_name(const std::string& name, std::span<const std::string_vie
 std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place);
 std::size_t find_collider(const ScenePlan& plan, const std::string& name, const Place& place);
 
-/// Index of the joint that a joint with a mimic follows. Throws SceneError if the plan has none of this name.
+/// Index in ScenePlan::joints of the joint whose coordinate `joint` follows. `joint` must have a MimicEntry. Throws
+/// SceneError if the plan has no joint of the name in this entry.
 std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan);
 
 /// Resolves the names of an anchor. The plan must already contain all bodies and colliders.
@@ -283,7 +288,7 @@ void name_object(World& world, HandleType object, const std::string& name) {
 }
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.
-/// Calls added(count), if given, after each body with the number of bodies that were added so far.
+/// If `added` is given, calls it after each body with the number of bodies that were added so far.
 Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>& added = {});
 
 /// Returns the bodies of a scene that was just built, in the order of ScenePlan::bodies. The order of World::bodies()

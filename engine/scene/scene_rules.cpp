@@ -41,7 +41,7 @@ MaterialSettings law_of(const OrthotropicModuli& moduli, const MaterialSettings&
 }
 template <class Entry>
 struct LawBy {};
-struct LawByName {};  // laws that the key "model" can give
+struct LawByName {};  // a law given by its name, which is the value of the key "model"
 std::string_view no_hint(std::string_view) {
     return {};
 }

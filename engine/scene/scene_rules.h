@@ -152,8 +152,8 @@ struct KeysOfKind {
     std::vector<std::string> required, optional;
 };
 /// Throws SceneError unless the keys of an object suit its kind. `given`: pairs (key that only some kinds use, true if
-/// the object has it). `kind`: text for the message, for example: the quantity "force". `no_keys`: expected value in
-/// the message if the kind uses none of these keys.
+/// the object has it). `kind`: text for the message, for example: the quantity "force". `no_keys`: text that the
+/// message gives instead of a list of keys if the kind uses none of these keys.
 void check_keys_of_kind(const Place& place, const std::string& kind, const KeysOfKind& keys,
                         const std::vector<std::pair<std::string, bool>>& given, const char* no_keys = "");
 

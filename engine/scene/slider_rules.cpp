@@ -1,4 +1,4 @@
-// Keys of sliders in a scene file, and the objects that they name.
+// Keys of sliders in a scene file. Also finds the objects that the sliders control.
 #include <algorithm>
 #include <numbers>
 #include <set>
@@ -49,7 +49,7 @@ SliderTarget moved(const World& world, HandleType object, const Motion& motion, 
     return {PoseControl{object}, {pose.position, pose.rotation}};
 }
 
-/// The object of this name, for example a joint or a cable. Throws SceneError unless exactly one has it.
+/// The object of this name, for example a joint or a cable. Throws SceneError unless exactly one object has this name.
 template <class HandleType>
 HandleType find_object(const ObjectView<HandleType>& objects, const std::string& name, const Place& place) {
     std::vector<std::string> names;
@@ -149,7 +149,7 @@ private:
     const ScenePlan& plan_;
     const PlannedHandles& handles_;
     World& world_;
-    std::set<std::string> taken_;  // objects of the sliders made so far
+    std::set<std::string> taken_;  // keys and names of the objects that the sliders made so far control
 };
 
 }  // namespace

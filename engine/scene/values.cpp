@@ -39,7 +39,8 @@ void check_limits(Real number, const Json& json, const Place& place, const KeyDo
     if (!inside) place.refuse(json.dump(), expected_number(doc, kind));
 }
 
-/// Largest accepted entry of |M M^T - I| for a rotation matrix M. It is not zero because files contain few digits.
+/// Largest accepted entry of |M M^T - I| for a rotation matrix M (I: identity). It is not zero because files contain
+/// few digits.
 constexpr Real rotation_tolerance = 1e-6;
 
 /// A rotation that a scene file gives as an object with axis and angle.

@@ -123,7 +123,8 @@ struct Value<Vec3> {
 };
 
 /// Reads a text, and returns the index of this text in `names`. Throws SceneError if `names` does not have it.
-/// `hint_for_removed`: returns the hint for the message if its argument is a removed name, else an empty text.
+/// `hint_for_removed`: returns the hint for the message if its argument is a name that is no longer accepted, else an
+/// empty text.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 
@@ -152,7 +153,8 @@ struct Value<std::optional<T>> {
 /// Calls item(value, place) for each item of a JSON list.
 void read_items(const Json& json, const Place& place, FunctionRef<void(const Json&, const Place&)> item);
 
-/// Appends the items of a list to `out`. If a scene includes others, the items of the included scenes come first.
+/// Appends the items of a list to `out`. If a scene includes other scenes, `out` already has the items of the included
+/// scenes.
 template <class T>
 struct Value<std::vector<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, std::vector<T>& out) {
@@ -195,7 +197,7 @@ struct Value<Named<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Reads a value of any type without a specialisation above: an object with a Rule.
+/// Reads a value of a type that has no specialisation above. Such a value is an object with a Rule.
 template <class T>
 struct Value {
     static void read(const Json& json, const Place& place, const KeyDoc&, T& out) {

@@ -17,8 +17,8 @@ void for_each_path(const SceneFile& scene, auto use) {
     };
     for (const BodyEntry& body : scene.bodies) {
         if (body.mesh) use_mesh(*body.mesh);
-        // If a visual surface or an included scene has only a path, its entry may be this path itself instead of an
-        // object. The whole entry is then replaced by the new path.
+        // An entry of a visual surface or an included scene that has no key other than its path may be a plain path
+        // instead of an object. The new path then replaces the whole entry.
         if (body.visual)
             use(body.visual->scale ? body.visual->place.key("file") : body.visual->place, body.visual->file.path);
     }

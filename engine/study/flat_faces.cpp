@@ -35,8 +35,9 @@ Real angle_at(Index node, const std::array<Index, 3>& triangle, std::span<const 
     return std::atan2(side(1).cross(side(2)).norm(), side(1).dot(side(2)));
 }
 
-/// For each triangle: normals of its smooth surface at the three nodes. A normal is the mean of the normals of the
-/// faces of this surface around the node, weighted by the angles of these faces at the node.
+/// For each triangle and each of its three nodes: normal of the smooth surface that the triangle approximates. It is
+/// the mean of the normals of the faces around the node, weighted by their angles there. Only faces whose normals
+/// differ by less than 40 degrees from that of the triangle count.
 std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
                                                 std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const Vec3> normals) {
@@ -68,7 +69,8 @@ Real largest_angle(std::span<const std::array<Index, 3>> triangles, std::span<co
     return std::acos(least);
 }
 
-/// True if `name` is the name of the body of an entry, or of one of its copies. Copies are named `of_entry`_NUMBER.
+/// True if `name` is the name of a body that an entry of the scene file makes. `of_entry`: name of the entry. If the
+/// entry makes several copies of its body, their names are `of_entry`_NUMBER.
 bool is_name(const std::string& name, const BodyEntry& body, const std::string& of_entry) {
     if (!body.repeat && body.positions.empty()) return name == of_entry;
     return name.starts_with(of_entry + "_") &&
@@ -91,9 +93,9 @@ FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Ind
     const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes, triangles, normals);
     Real curved = 0, sum = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        // Along an edge of length L in a surface of curvature k the normal turns by k L, and the middle of the edge is
-        // off by k L^2/8. The mean offset of the three edges stands for the triangle. The largest curvature of the
-        // edges gives the radius.
+        // Along an edge of length L in a surface of curvature k, the normal turns by the angle k L, and the middle of
+        // the edge lies k L^2/8 below the surface. The mean of this distance over the three edges stands for the
+        // triangle. The largest k of the three edges stands for the curvature of the surface.
         Real offsets = 0, curvature = 0, most = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 edge = nodes[static_cast<std::size_t>(triangles[t][(i + 1) % 3])] -

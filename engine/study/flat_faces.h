@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Flat faces of a mesh that approximate a curved surface.
+/// Measures for how well the flat faces of a mesh approximate a curved surface.
 struct FlatFaces {
     // Mean distance of the flat faces from a smooth surface through their nodes, divided by the radius of curvature of
     // this surface; 0 if no part is curved.
@@ -18,17 +18,19 @@ struct FlatFaces {
     Real angle = 0;  // largest angle between neighbouring faces of the curved surface [rad]
 };
 
-/// Measures the faces of a surface, which may be open. Edges at which triangles meet at more than 40 degrees count as
-/// edges of the body, not as approximations of a curved surface.
+/// Measures the faces of a surface, which need not be closed. Where the normals of neighbouring triangles differ by
+/// more than 40 degrees, the edge between them is assumed to be an edge of the body. Only the other edges count as
+/// approximations of a curved surface.
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles);
 
-/// A deformable body whose refined meshes keep the flat faces of a file.
+/// A deformable body whose surface comes from a file. Refinement divides the flat faces of the file, but does not move
+/// the new nodes onto the curved surface that the faces approximate.
 struct FlatBody {
     std::string name;
     FlatFaces faces;
-    bool is_held = false;  // true if its displacements are deformations: it is pinned, and no pin moves
+    bool is_held = false;  // true if the body is pinned and no pin moves, so that all displacements are deformations
 
-    /// Relative error of displacements and stresses of the body; 0 unless it is held.
+    /// Relative error of the displacements and stresses of the body because its faces are flat; 0 unless `is_held`.
     Real error() const;
 };
 /// Returns the deformable bodies with a curved surface whose mesh is read from a file or fills a surface.

@@ -53,8 +53,9 @@ void add_level_run(const StudiedScene& scene, int level, StudyStage stage, std::
     if (level > scene.levels.finest) plan.back().reason = "no finer meshes: " + scene.levels.why_not_finer;
 }
 
-/// Mean step of the implicit bodies [s]. Each call of advance is divided into equal implicit steps, which are shorter
-/// than the setting unless the call is a multiple of the setting. Only explicit bodies divide an implicit step further.
+/// Mean step of the implicit bodies [s]. Without explicit bodies it is the mean step of the world. Otherwise a call of
+/// advance is divided into equal implicit steps, as few as the upper limit Settings::implicit_step allows, and each of
+/// these into shorter explicit steps.
 Real mean_implicit_step(const StudiedScene& scene, Real mean_step) {
     if (!scene.has_explicit) return mean_step;
     constexpr Real rounding = 1e-9;
@@ -95,7 +96,7 @@ std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
     std::vector<PlannedRun> plan{{{}, 1, {}, StudyStage::start}, {{.draw = 1}, 1, {}, StudyStage::start}};
     add_element_runs(scene, plan);
     plan.push_back({{.step = 0.5}, 2, {}});
-    constexpr double solving = 1.5;  // twice the solver sweeps, which take half of the CPU time
+    constexpr double solving = 1.5;  // cost: the solver, half of the CPU time, needs twice as many sweeps
     plan.push_back({{.tolerance = 0.01}, solving, {}});
     add_level_run(scene, -1, StudyStage::basic, plan);
     if (scene.levels.coarsest <= -2) add_level_run(scene, -2, StudyStage::basic, plan);

@@ -40,7 +40,7 @@ enum class StudyStage { start, basic, finer, last };
 struct PlannedRun {
     StudyVariant variant;
     double cost = 1;     // predicted CPU time, divided by that of the scene as it is
-    std::string reason;  // reason why the run is left out; empty: it is made
+    std::string reason;  // reason why the run is not made; empty if it is made
     StudyStage stage = StudyStage::basic;
 };
 
@@ -48,18 +48,19 @@ struct PlannedRun {
 /// of the scene as it is.
 std::vector<PlannedRun> plan_study(const StudiedScene& scene);
 
-/// Predicts the costs of runs with finer meshes from the runs with coarser ones. `runs` is indexed as `plan`. From one
-/// level to the next finer one the cost grows at most like the number of tetrahedra times the number of steps, and less
-/// on small meshes.
+/// Predicts the costs of runs with finer meshes from the runs with coarser ones. runs[i] is the run of plan[i]. From
+/// one level to the next finer one, the cost grows at most like the number of tetrahedra times the number of steps. On
+/// small meshes it grows less.
 void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, std::span<PlannedRun> plan);
 
 /// Predicted wall time of runs with these costs, in units of the cost.
 double wall_time(std::vector<double> costs, int threads);
-/// True if a run is made alone with all threads, because on one thread it would take longer than all work divided among
-/// the threads. `total`: sum of the costs of the runs that are not made yet.
+/// True if a run is made alone with all threads. This is so if it would take longer on one thread than all remaining
+/// work, divided equally among the threads. `total`: sum of the costs of all runs that are not made yet, with this one.
 bool gets_all_threads(double cost, double total, int threads);
-/// Leaves out runs that do not fit into the budget: a run is left out if it and the chosen runs before it would take
-/// longer than `budget` times the first run. Runs with an index below `first` are already made and are not left out.
+/// Leaves out runs that do not fit into the budget. The runs are taken in order. A run is left out if the chosen runs,
+/// together with it, would take longer than `budget` times the duration of the first run. Runs with an index below
+/// `first` are already made and are not left out.
 void keep_to_budget(double budget, int threads, std::size_t first, std::span<PlannedRun> plan);
 
 /// Assignments with which `skerry run --set` runs a variant. `mean_step`: mean step of the unchanged scene [s].

@@ -16,7 +16,7 @@ std::string variant_name(const StudyVariant& variant);
 /// Reserves a folder for one study, until the object is destroyed. The folder is created if it is missing.
 class FolderLock {
 public:
-    /// An empty path reserves nothing. Throws SceneError if another study, in any process, has the folder.
+    /// An empty path reserves nothing. Throws SceneError if another study, in any process, has reserved the folder.
     explicit FolderLock(const std::filesystem::path& folder);
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
@@ -33,7 +33,8 @@ void write_run(const std::filesystem::path& folder, const std::string& inputs, c
 /// Result of a run in a folder.
 struct StoredRun {
     std::optional<StudyRun> run;  // the run, if the file holds it and was written for the given inputs
-    std::string found;            // text for a message if the file holds anything but this run; else empty
+    // if the file holds anything but this run: its content in words, for messages; else empty
+    std::string found;
 };
 StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);
 

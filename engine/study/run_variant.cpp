@@ -113,7 +113,8 @@ private:
 
 void perturb_start(int draw, World& world) {
     if (draw == 0) return;
-    constexpr double largest = 1e-12;  // largest movement [m]; components get half of it, as sqrt(3) / 2 < 1
+    // Upper limit of a movement [m]. Each component is at most half of it, so the movement is at most sqrt(3)/2 of it.
+    constexpr double largest = 1e-12;
     std::mt19937_64 engine(static_cast<std::uint64_t>(draw));
     // Random number between -1 and 1 with 53 bits. The distributions of the standard library are not used, because
     // their results differ between implementations.

@@ -23,7 +23,7 @@ namespace skerry {
 
 namespace {
 
-// Time between two calls of StudySettings::go_on. It lets a program react to Ctrl-C within 50 ms.
+// Time between two calls of StudySettings::go_on. It is short, so that a program can react to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
 constexpr double usual_budget = 15;  // default of StudySettings::budget; short studies get more, see drop_pointless()
@@ -205,8 +205,8 @@ private:
         return inputs;
     }
 
-    /// Reads run `i` from the folder. Returns true if the folder has it with a result. Throws SceneError if the file
-    /// holds anything else than this run.
+    /// Reads run `i` from the folder. Returns true if the folder holds this run and the run has a result. Throws
+    /// SceneError if the file of the run holds something else.
     bool read_stored(std::size_t i) {
         if (settings_.folder.empty()) return false;
         StoredRun stored = read_run(settings_.folder, inputs_[i], plan_[i].variant);

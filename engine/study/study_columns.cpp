@@ -19,15 +19,16 @@ namespace {
 
 // largest number of bodies with columns of their own in the report
 constexpr std::size_t most_reported = 20;
-// Largest number of bodies whose positions are recorded. For larger scenes only mean, least and largest values are
-// recorded.
+// Largest number of bodies whose displacements are recorded one by one. In larger scenes only the mean, least and
+// largest displacements of all bodies are recorded.
 constexpr std::size_t most_recorded = 1000;
 
 bool starts_with_any(std::string_view text, std::span<const std::string_view> starts) {
     return std::ranges::any_of(starts, [&](std::string_view start) { return text.starts_with(start); });
 }
 
-/// True for the quantities of a default probe for which the study makes columns; it drops all others.
+/// True for the quantities of the default probe of a body that become columns of the study. The other quantities of the
+/// probe are dropped.
 bool is_default(std::string_view quantity) {
     static constexpr std::array<std::string_view, 3> recorded{"displacement_", "force_", "largest_von_mises"};
     return starts_with_any(quantity, recorded);
@@ -77,8 +78,8 @@ std::vector<RecordedProbe> joined(std::vector<RecordedProbe> probes, const auto&
     return probes;
 }
 
-/// The recorded probes of a scene, and the stresses at the nodes of each probe of contacts. Rigid bodies have no
-/// stress.
+/// Returns the recorded probes of a scene. For each contact probe on a deformable body it adds a probe of the stress at
+/// the same nodes. Rigid bodies have no stress.
 std::vector<RecordedProbe> probes_of(const Scene& scene) {
     std::vector<RecordedProbe> probes = scene.recorded;
     for (const Probe& probe : scene.probes)

@@ -11,7 +11,8 @@
 namespace skerry {
 
 /// Records the probes of a scene, and the default quantities: displacement, contact force and largest stress of each
-/// body, and the energies. A call of sample() records a row unless no step was made since the call before.
+/// body, and the energies. The first call of sample() records a row. Later calls do so only if a step was made since
+/// the previous call.
 class StudyRecorder {
 public:
     /// `scene` must not have been changed or advanced since it was built, and must outlive the object.
@@ -28,7 +29,7 @@ public:
     std::vector<std::string> bodies() const;
 
 private:
-    /// Statistic that combines the values of several columns of `recorder_` to one value.
+    /// Statistic that combines the values of several columns of `recorder_` into one value.
     enum class Part { mean, least, largest };
     struct Source {
         StudyColumn column;
@@ -65,12 +66,12 @@ private:
     Real size_ = 0;  // diagonal of the bounding box of all bodies at the start [m]
     std::vector<Source> sources_;
     std::vector<Stress> stresses_;
-    std::size_t rows_ = 0;  // number of rows that `stresses_` and `contacts_` cover
+    std::size_t rows_ = 0;  // number of rows that are already included in `stresses_` and `contacts_`
 };
 
-/// Sets StudyColumn::reported: true for the columns that a name selects. NAME selects all columns of a probe,
-/// NAME.QUANTITY one of them or all components of a vector. If `names` is empty, nothing is changed. Throws SceneError
-/// for a name that selects no column. `file`: scene file, for the message.
+/// Sets StudyColumn::reported to true for columns that a name selects, and to false for all others. NAME selects all
+/// columns of the probe NAME. NAME.QUANTITY selects one of its columns, or all components of a vector. If `names` is
+/// empty, nothing is changed. Throws SceneError for a name that selects no column. `file`: scene file, for the message.
 void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
                             std::vector<StudyColumn>& columns);
 

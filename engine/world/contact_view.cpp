@@ -28,8 +28,8 @@ Index local_node(const Model& model, Index node) {
     return node - model.bodies.nodes[static_cast<std::size_t>(body)].begin;
 }
 
-/// True for explicit deformable bodies. On these, contact forces act only for the force interval of a step
-/// (docs/glossary.md); on implicit and rigid bodies they act for the whole step.
+/// True for explicit and rigid bodies. Contact forces act on them for StepParameters::kick_time. On implicit bodies
+/// they act for the length of the step.
 bool is_kicked(const Model& model, Index body) {
     return deforms(model, body) && model.bodies.implicit[static_cast<std::size_t>(body)].size() == 0;
 }

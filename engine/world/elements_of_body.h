@@ -1,4 +1,4 @@
-// Elements of one body, with the positions of their nodes.
+// Elements of one body and the present positions of their nodes, from which stress and strain are computed.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Elements of a body in its present shape: in the mesh frame for an implicit body, in world coordinates for an
-/// explicit body, no elements for a rigid body. Valid until the world changes.
+/// Elements of a body in its present shape. Their frame is the frame of the mesh for an implicit body, and the world
+/// frame for an explicit body. A rigid body has no elements. Valid until the world changes.
 class ElementsOfBody {
 public:
     ElementsOfBody(const Model& model, std::size_t row);
@@ -30,21 +30,22 @@ public:
 
     /// Rotates tensors from the frame of the elements to world axes.
     void turn(std::span<Mat3> values) const;
-    /// Stress and strain at the given nodes of the body, in their order, in the frame of the elements.
+    /// Stress and strain at the nodes `nodes` of the body, in this order and in the frame of the elements.
     NodeFields node_fields(std::span<const Index> nodes) const;
 
 private:
     const Model& model_;
     std::size_t row_;
     bool is_implicit_;
-    // of an implicit body: its elements, and the node positions in the mesh frame [m]; otherwise empty
+    // For an implicit body: its elements, and the positions of its nodes in the frame of the mesh [m]. Empty for other
+    // bodies.
     std::shared_ptr<const OwnElements> own_;
     std::vector<Vec3> shape_;
 };
 
-/// Numbers of all nodes of a body: 0, 1, and so on.
+/// Returns the numbers of all nodes of a body within the body: 0, 1, and so on.
 std::vector<Index> all_nodes(const Model& model, std::size_t row);
-/// Stress and strain at the given nodes of a body, in world axes.
+/// Returns stress and strain at the given nodes of a body, in world axes. `row`: row of BodyTable.
 NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes);
 
 }  // namespace skerry

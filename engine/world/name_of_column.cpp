@@ -1,4 +1,4 @@
-// Finds the name of the column at an address in a world. The name is used only in messages.
+// Finds the name of the column or value at an address in a world, for messages.
 #include <string>
 
 #include "engine/world/world_state.h"

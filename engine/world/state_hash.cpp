@@ -44,8 +44,9 @@ void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count
         for (std::size_t i = 0; i < count; ++i) add_members(hash, type, rows + i * type.bytes);
 }
 
-/// Hashes the given rows of every column of a table with the role `state`. Rows beyond the end of a column are left
-/// out. A range of negative size, which wraps to a large unsigned number, extends to the last row.
+/// Hashes the given rows of every column of a table that has the role `state`. Rows beyond the end of a column are left
+/// out. If the size of the range is negative, all rows from its begin are hashed, because the size wraps to a large
+/// unsigned number.
 void add_state(Hash& hash, AnyTable table, Range rows) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::state) continue;
@@ -63,7 +64,7 @@ std::uint32_t slot_of(std::span<const std::uint32_t> slot, Index row) {
     return row == no_index ? nothing : slot[static_cast<std::size_t>(row)];
 }
 
-/// Returns the rows of a table, sorted by slot. Rows with equal slots stay in order.
+/// Returns the rows of a table, sorted by the slots of their handles. Rows with equal slots stay in order.
 std::vector<std::size_t> in_slot_order(std::span<const std::uint32_t> slot) {
     std::vector<std::size_t> order(slot.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -125,8 +126,8 @@ void add_filter(Hash& hash, const CollisionFilter& filter) {
     if (filter != CollisionFilter{}) add_row(hash, filter);
 }
 
-/// Hashes one row of the state columns that have one row per object of the table. Columns with links to other rows are
-/// left out.
+/// Hashes one row of every column of a table that has the role `state` and one row for each row of the table. Columns
+/// that contain row numbers of other tables have the role `link`, and are left out.
 void add_row_state(Hash& hash, AnyTable table, std::size_t row) {
     for (const ColumnInfo& info : table.columns())
         if (info.role == ColumnRole::state && info.has_row_each) add_rows(hash, table.column(info), row, 1);
@@ -146,8 +147,8 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
     add_script(hash, table.script[a], table.keyframe);
 }
 
-/// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies and colliders are hashed, not their
-/// rows, which change when other objects are removed.
+/// Hashes a row that joins bodies, such as a joint. Joined bodies and colliders are hashed by the slots of their
+/// handles, because their rows change when other objects are removed.
 template <class Table>
 void add_joining_row(Hash& hash, const Model& model, Table& of, std::size_t row) {
     const AnyTable table(of);
@@ -170,7 +171,7 @@ void add_joining_row(Hash& hash, const Model& model, Table& of, std::size_t row)
     }
 }
 
-/// Hashes the lists of time keys (values at given times) of all rows of a table. Rows without keys add nothing.
+/// Hashes the time keys (values at given times) of all rows of a table. Rows without keys are left out.
 template <class Table>
 void add_keys(Hash& hash, const Table& table) {
     for (const std::size_t row : in_slot_order(table.slot)) {
@@ -193,7 +194,8 @@ void add_tied_nodes(Hash& hash, TieTable& table) {
     }
 }
 
-/// Hashes the members of all surface sets, and the row of each set, because the later row applies where sets overlap.
+/// Hashes the members of all surface sets, and the row of each set. The row matters where sets overlap: there the set
+/// with the last row applies.
 void add_members_of_sets(Hash& hash, const SurfaceSetTable& table) {
     for (const std::size_t row : in_slot_order(table.slot)) {
         hash.add(table.slot[row]);
@@ -203,7 +205,7 @@ void add_members_of_sets(Hash& hash, const SurfaceSetTable& table) {
     }
 }
 
-/// Hashes the faces of all rows of a table, and the stored positions of their corners.
+/// Hashes the faces of all rows of a table such as CavityTable, and the stored positions of their corners.
 template <class Table>
 void add_faces(Hash& hash, const Table& table) {
     for (const std::size_t row : in_slot_order(table.slot)) {
@@ -231,9 +233,8 @@ void add_collider(Hash& hash, Model& model, std::size_t c) {
     if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
 }
 
-/// Hashes overlapping pairs in the order of their keys, which name bodies and colliders by slot. Pairs without overlap
-/// are not hashed, because a search finds them again. Which of these pairs are stored depends on the time of the last
-/// search.
+/// Hashes overlapping pairs of objects in the order of their keys, which name bodies and colliders by slot. Pairs
+/// without overlap are left out: a search finds them again, and it depends on the last search which of them are stored.
 void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (pairs.state[p] != PairState::overlapping) continue;

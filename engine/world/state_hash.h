@@ -1,4 +1,4 @@
-// One hash of all state that the next step depends on.
+// One hash of all data on which the next step depends.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,14 @@
 
 namespace skerry {
 
-/// Returns the hash of every column with the role `state` or `link` (ColumnRole), of the clock and of gravity.
+/// Returns one hash of all columns with the role `state` or `link` (ColumnRole), of the clock and of gravity. It serves
+/// to test whether two worlds have equal states.
 ///
-/// Bodies are hashed one by one, in the order of their slots. Row numbers of nodes and elements are counted from the
-/// first row of the body. Materials, colliders, attachments and joints are hashed in the order of their slots too. So
-/// the hash does not depend on the rows in which the tables store an object. Of the stored pairs of objects only
-/// overlapping ones are hashed, because a search finds all others again. Settings that cannot change later are not
-/// hashed, so that worlds with different numbers of threads can be compared.
+/// The hash does not depend on the rows in which tables store an object. Therefore bodies, materials, colliders,
+/// attachments and joints are hashed one by one, in the order of the slots of their handles. Row numbers of nodes and
+/// elements are counted from the first row of the body. Of the stored pairs of objects, only overlapping ones are
+/// hashed, because a search finds all others again. Settings that cannot change later are not hashed, so that worlds
+/// with different numbers of threads can be compared.
 std::uint64_t state_hash(WorldState& world);
 
 /// Returns the hash of one body with its nodes and elements. `body`: row of BodyTable.

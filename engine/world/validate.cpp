@@ -62,7 +62,8 @@ private:
             if (corner < 0 || corner >= static_cast<Index>(nodes))
                 refuse(object, "triangles", "node " + std::to_string(corner),
                        "the index of a node of the mesh, 0 to " + std::to_string(static_cast<Index>(nodes) - 1));
-        // A triangle with two equal nodes is refused: inside the engine it represents the core of a round body.
+        // A triangle with two equal nodes is refused, because the engine uses such triangles to represent the cores of
+        // round bodies (Model::append_outline).
         const auto [a, b, c] = triangle;
         if (a == b || b == c || c == a)
             refuse(object, "triangles",
@@ -82,7 +83,8 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
 }
 
-/// Checks the sets of a mesh. Sets with a material of their own must contain tetrahedra, and have none in common.
+/// Checks the sets of a mesh. Sets with a material of their own must contain tetrahedra, and must not have common
+/// tetrahedra. `materials`: materials of sets by the names of the sets.
 void require_sets(const Mesh& mesh, const std::map<std::string, MaterialHandle>& materials, const std::string& object) {
     for (const auto& [name, set] : mesh.sets)
         mesh::require_set(object, name, set, mesh.nodes.size(), mesh.tetrahedra, mesh.triangles);
@@ -184,14 +186,14 @@ void validate(const Tuning& tuning) {
 
 namespace {
 
-/// Checks that each side of a face has at most one tetrahedron. Otherwise tetrahedra overlap, and the face cannot be a
-/// part of a surface that objects touch.
+/// Checks that each side of a face has at most one tetrahedron. Two tetrahedra on one side overlap, and the surface of
+/// the mesh is then not defined.
 void require_apart(const Mesh& mesh, const std::string& object) {
     const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
     std::string found;  // for the message: the first two tetrahedra found on the same side of one face
     std::size_t count = 0;
     for (std::size_t first = 0; first < faces.size();) {
-        std::array<Index, 2> seen{no_index, no_index};  // number of the tetrahedron on each side of the face
+        std::array<Index, 2> seen{no_index, no_index};  // the tetrahedron on each side of the face, or no_index
         std::size_t i = first;
         for (; i < faces.size() && faces[i].node == faces[first].node; ++i) {
             Index& on_side = seen[faces[i].turned ? 1 : 0];
@@ -216,8 +218,8 @@ void require_start(const BodySettings& body, const std::string& object) {
         require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
 }
 
-/// Checks that the mesh is valid for a body. `may_cross`: true if the shells of a surface may cross each other, because
-/// the inertia is not computed from them.
+/// Checks that the mesh is valid for a body. `may_cross`: true if the shells (closed parts) of a surface may cross each
+/// other. This is allowed only if the user gives the inertia, so that it is not computed from the volume in the shells.
 void require_mesh(const Mesh& mesh, bool may_cross, const std::string& object) {
     if (mesh.tetrahedra.empty() && mesh.triangles.empty())
         refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron, or the triangles of a surface");
@@ -241,7 +243,7 @@ void require_mesh(const Mesh& mesh, bool may_cross, const std::string& object) {
     mesh::require_shells(surface, object, may_cross);
 }
 
-/// Checks the given mass properties of a body. Only a rigid body may have them.
+/// Checks the mass, centre of mass and inertia that a user gives for a body. Only a rigid body may have them.
 void require_mass(const BodySettings& body, bool rigid, const std::string& object) {
     if (!body.mass && !body.center_of_mass && !body.inertia) return;
     const char* const given = body.mass ? "mass" : body.inertia ? "inertia" : "center_of_mass";
@@ -328,7 +330,8 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
-        constexpr Real most = 1e6;  // largest rotation for which the rounding error stays at about 1e-10 rad
+        // upper limit of a rotation [rad]; the rounding error of the angle is then about 1e-10 rad
+        constexpr Real most = 1e6;
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
                 "a rotation of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,
@@ -360,8 +363,8 @@ void validate(const Motion& motion, const Vec3& pivot) {
 namespace {
 
 /// Checks that the first key of a plane's motion agrees with the point and the normal of the plane, unless these have
-/// their default values. Keys are poses of the plane itself. A user who takes them for displacements from the point
-/// would otherwise get a plane in another place.
+/// their default values. Keys are poses of the plane, and not displacements from the given point. A user who confuses
+/// the two would otherwise get a plane in the wrong place.
 void require_keys_of_plane(const Plane& plane, const ColliderSettings& collider, const std::string& object) {
     if (collider.motion.keys.empty()) return;
     constexpr Real same =

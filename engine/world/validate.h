@@ -18,24 +18,25 @@ namespace skerry {
 void validate(const Settings& settings);
 void validate(const Tuning& tuning);
 void validate(const MaterialSettings& material);
-/// Checks a body and its mesh. `mesh_is_known`: true if the mesh was already found valid for another body.
+/// Checks a body and its mesh. `mesh_is_known`: true if another body has this mesh, so that the mesh need not be
+/// checked again.
 void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);
 void validate(const Sphere& sphere, const BodySettings& body);
 void validate(const Capsule& capsule, const BodySettings& body);
 void validate(const Cylinder& cylinder, const BodySettings& body);
-/// Checks a body after its rows were appended: its stable step must be above 0, and finite unless the body is rigid or
-/// implicit.
+/// Checks a body after its rows were appended. Its stable step must be above 0. It must also be finite, unless the body
+/// is rigid or implicit.
 void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object);
-/// Checks the time table `field` of `object`: at least one key, finite numbers, and each time later than the one
-/// before.
+/// Checks the time table `field` of `object`. It must have at least one key and only finite numbers, and each time must
+/// be later than the one before.
 void require_table(const std::string& object, const std::string& field, const TimeTable& table);
-/// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.
+/// Checks that the node numbers `nodes` exist in `object`, a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
-/// Checks in addition to require_nodes that no node is repeated.
+/// Checks as require_nodes does, and that no node occurs twice.
 void require_different_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);
 

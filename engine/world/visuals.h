@@ -1,4 +1,4 @@
-// Visual surfaces (drawn in place of bodies) that were bound to a mesh before a body with this mesh was added.
+// Visual surfaces: surfaces that are drawn in place of bodies and move with their nodes.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Gives a body a visual surface that is bound to the mesh of this body; nullptr removes the surface of the body.
+/// Gives a body a visual surface that was bound to its mesh earlier (bind_visual). nullptr removes the visual surface.
 void set_bound_visual(World& world, BodyHandle body, std::shared_ptr<const BoundVisual> visual);
 
 }  // namespace skerry

@@ -28,7 +28,8 @@ namespace skerry {
 
 namespace {
 
-/// Material of each tetrahedron, as row of MaterialTable. Empty if no label or set has a material of its own.
+/// Returns for each tetrahedron the row of its material in MaterialTable. The result is empty if no label or set has a
+/// material of its own.
 std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh, const BodySettings& body) {
     if (body.materials.empty() && body.materials_of_sets.empty()) return {};
     std::map<int, Index> row_of;
@@ -48,11 +49,12 @@ void mark(Index row, std::vector<std::uint8_t>& rows) {
     rows[at] = 1;
 }
 
-/// Returns a number that no other world of this process has, and most probably no world saved by another process.
+/// Returns a number that no other world of this process has. The random start makes it most probable that no world
+/// saved by another process has it either.
 std::uint32_t next_world_number() {
     static std::atomic<std::uint32_t> next = std::random_device{}();
     const std::uint32_t number = next++;
-    return number != 0 ? number : next++;  // 0: no world
+    return number != 0 ? number : next++;  // 0 means no world
 }
 
 }  // namespace
@@ -67,7 +69,7 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
 }
 
 void WorldState::require_between_steps(const char* call) const {
-    // calls that a divided world allows; all ranks must make them together
+    // calls that are allowed in a world divided among ranks; all ranks must make them together
     constexpr std::array<std::string_view, 4> on_ranks{"advance", "distribute", "settle_start", "watch_steps"};
     if (ranks.on() && std::ranges::find(on_ranks, call) == on_ranks.end())
         refuse(call, "world", "a world that is divided among ranks", "an undivided world",
@@ -91,7 +93,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // clusters contain rows of NodeTable, which erase_gone_rows changes
+        model.clusters.clear();  // clusters refer to rows of NodeTable, which erase_gone_rows moves
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -160,7 +162,7 @@ World copy_of_settled(const WorldState& source, const LoadSettings& load_setting
     use(load_settings, settings);
     World copy = tuned_world(settings, source.model.tuning);
     WorldState& to = WorldAccess::state_of(copy);
-    settings.backend = to.model.settings.backend;  // `automatic` was replaced by the backend in use
+    settings.backend = to.model.settings.backend;  // the copy has replaced `automatic` by the backend in use
     to.model = source.model;
     to.model.settings = settings;
     to.clock = source.clock;
@@ -195,8 +197,9 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 
 namespace {
 
-/// Core of a round body: BodyTable::core_nodes and round_radius. The mesh of a round body is only drawn, and has no
-/// part in contacts. A body with 0 core nodes is not round.
+/// Core of a round body (a rigid sphere, capsule or cylinder): its first nodes and a radius (BodyTable::core_nodes and
+/// round_radius). Contacts use these instead of faces. The mesh of a round body is only drawn. A body with 0 core nodes
+/// is not round.
 struct RoundCore {
     Index nodes = 0;
     Real radius = 0;  // m
@@ -234,8 +237,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     if (core.nodes > 0) {
         fresh.dynamics = BodyDynamics::rigid;
     } else if (body.dynamics == BodyDynamics::automatic) {
-        // Removed bodies must not limit the step that choose_dynamics estimates, so settle() erases them. It is not
-        // called without need, because it also discards Model::known_elements, which save time for equal meshes.
+        // settle() erases removed bodies, which must not limit the step that choose_dynamics estimates. It is called
+        // only if there are any, because it also discards Model::known_elements, which save time for equal meshes.
         if (!state.edits.removed_bodies.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
@@ -264,8 +267,9 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     return handle;
 }
 
-/// Makes implicit bodies explicit for which explicit steps now take less computing time, because the new body `added`
-/// requires short steps anyway. Only bodies with automatic choice of the dynamics are changed.
+/// Reconsiders the dynamics of implicit bodies after the body `added` was added. If this body requires short steps
+/// anyway, explicit steps may now cost less computing time for an implicit body. Such bodies become explicit, if the
+/// user has left the choice of their dynamics to the engine.
 void revise_choices(World& world, WorldState& state, BodyHandle added) {
     Model& model = state.model;
     if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
@@ -327,7 +331,7 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 namespace {
 
 /// Must be called for an object that is removed. If it belongs to the pair with the deepest overlap of held surfaces,
-/// the pair is forgotten, because a new object may get the same slot. The stored depth remains.
+/// HeldDepth::pair is reset, because a new object may get the same slot. The stored depth remains.
 void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
     const PairSlots pair = slots_of_pair(held.pair);
     if (is_collider ? pair.is_collider && pair.second == slot
@@ -400,7 +404,7 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
-    const Real kick_time = parameters.kick_time;  // contacts of the last step are still reported with this value
+    const Real kick_time = parameters.kick_time;  // kept, because contacts of the last step are still reported with it
     parameters = step_parameters(state_->model.settings, state_->model.tuning);
     parameters.kick_time = kick_time;
     state_->record.balance.close();

@@ -39,8 +39,9 @@ Energy energy_of(const Model& model, Real time, Real dissipated) {
 
 namespace {
 
-/// Counts smoothed elements with a volume ratio det F below 0.2, unless all elements of the body are tetrahedra. An
-/// element can be compressed this much although none of its tetrahedra is.
+/// Counts the elements of a body whose volume ratio det F is below 0.2, if some elements are smoothed. A smoothed
+/// element has the mean deformation gradient F of its tetrahedra, which may fold so that det F is this small although
+/// no tetrahedron is compressed this much.
 void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real folded = 0.2;
     const Range blocks = model.bodies.blocks[body];
@@ -59,8 +60,8 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
 }
 
 /// Energy of rounding errors [J]: the elastic energy of the strain that rounding of positions can cause in ten thousand
-/// steps. It is the least scale for the energy error. Bodies at rest without weight exchange no energy with which the
-/// error could be compared.
+/// steps. The energy error is divided at least by this value, because bodies at rest without weight exchange no energy
+/// with which the error could be compared.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;
@@ -69,7 +70,8 @@ Real energy_of_rounding(const Model& model) {
         Real farthest = 0;  // [m]
         for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
             farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
-        Real stiffness = 0;  // twice the elastic energy divided by squared strain [J]
+        // sum of volume times Young's modulus: twice the elastic energy divided by the squared strain [J]
+        Real stiffness = 0;
         for (auto block = static_cast<std::size_t>(model.bodies.blocks[b].begin);
              block < static_cast<std::size_t>(model.bodies.blocks[b].end); ++block) {
             const auto material = static_cast<std::size_t>(model.elements.material[block]);
@@ -192,7 +194,8 @@ void note_fastest_turn(const Model& model, WorldReport& report) {
     }
 }
 
-/// Writes the deepest overlap of held surfaces, and the names of the two objects if both still exist.
+/// Writes to the report the deepest overlap of surfaces whose motion is prescribed, and the names of the two objects if
+/// both still exist.
 void note_held(const WorldState& world, WorldReport& report) {
     const Model& model = world.model;
     report.held_penetration = world.record.held.depth;

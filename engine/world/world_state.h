@@ -1,5 +1,6 @@
-// All state that a world owns. A function of engine/world gets only the parts that it may access. Functions that run a
-// whole step, or report about the whole world, get all of it. Systems get spans of the columns.
+// All data that a world owns. Most functions of engine/world get only those parts of it that they access. Functions
+// that run a whole step, or report about the whole world, get all of it. Systems (the functions in systems/) get spans
+// of columns.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +22,13 @@
 
 namespace skerry {
 
-/// Changes of a world that are still to be completed by WorldState::settle.
+/// Changes of a world that WorldState::settle has yet to complete.
 struct OpenEdits {
     bool rows = false;  // true if bodies, colliders or attachments were added or removed
     // True if bodies with elements were added or removed, or nodes became held or free.
     bool elements = false;
-    // by row of BodyTable or ColliderTable: nonzero if it is to be removed; rows beyond the end of the list stay
+    // For each row of BodyTable or ColliderTable: nonzero if it must be removed. Rows beyond the end of the list
+    // remain.
     std::vector<std::uint8_t> removed_bodies, removed_colliders;
     ChangedPlaces places;
 };
@@ -45,21 +47,22 @@ struct WorldState {
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
     OpenEdits edits;
-    bool advancing = false;     // true within advance(), when callbacks must not change the world
-    bool drawn_behind = false;  // true if nodes that only draw round bodies are out of date; only within advance()
+    bool advancing = false;  // true within advance(), when callbacks must not change the world
+    // true if nodes that are only drawn (those of round bodies) are out of date; only within advance()
+    bool drawn_behind = false;
 
-    /// Throws SceneError if the call comes from a callback of advance(), or if a world divided among ranks does not
-    /// allow it. `call`: name of the called function.
+    /// Throws SceneError if a callback of advance() makes the call `call`, or if the call is not allowed in a world
+    /// divided among ranks. `call`: name of the called function, for the message.
     void require_between_steps(const char* call) const;
     /// Completes all pending changes: removes rows, computes derived columns of new rows, wakes sleeping bodies near
     /// the changes, and updates the nodes that draw round bodies. Call it as late as possible, so that many changes in
     /// succession are completed at once.
     ///
-    /// Functions that read all rows, return the contents of rows or ask which bodies sleep must call it, even if they
-    /// are const. Functions that only find a single row need not call it.
+    /// Functions must call it first, even const ones, if they read all rows, return the contents of rows or ask which
+    /// bodies sleep. Functions that only find a single row need not call it.
     void settle();
-    /// Updates the nodes that only draw round bodies, if they are out of date. `resting`: true if bodies fell asleep in
-    /// the last step; nodes of sleeping bodies are then updated too.
+    /// Updates the nodes that draw round bodies, if they are out of date. `resting`: true if bodies fell asleep in the
+    /// last step, so that nodes of sleeping bodies must be updated too.
     void draw(bool resting = false);
 
 private:
@@ -78,7 +81,8 @@ struct WorldAccess {
     }
 };
 
-/// Copies a world without pending changes. Only reads `source`, so that several threads may copy one world at once.
+/// Returns a copy of a world without pending changes. Only reads `source`, so several threads may copy one world at the
+/// same time. `load_settings`: backend and number of threads of the copy.
 World copy_of_settled(const WorldState& source, const LoadSettings& load_settings);
 
 /// Returns the name of the column or value at an address inside a WorldState, such as "nodes.velocity". The name is

@@ -149,7 +149,8 @@ public:
 
 private:
     static constexpr int exchange_tag = 1, gather_tag = 2;
-    // Greatest length of a piece of a message. A message ends with the first shorter piece, which may be empty [bytes].
+    // Greatest length of a piece of a message [bytes]. The last piece of a message is the first one that is shorter; it
+    // may be empty.
     static constexpr std::size_t longest_piece = std::size_t{1} << 24;
 
     /// Converts a number of bytes to int, the type in which MPI counts. Throws std::runtime_error if it does not fit.
@@ -205,7 +206,7 @@ private:
 
 std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* exit_message) {
     // With this variable Open MPI yields the core while it waits. Otherwise a waiting rank would take time from the
-    // threads of other ranks. A value that the user has set is kept.
+    // threads of other ranks. setenv() keeps a value that the user has set.
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     int level = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);

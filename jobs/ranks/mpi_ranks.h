@@ -14,7 +14,7 @@ namespace skerry {
 /// MPI_THREAD_SERIALIZED.
 std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* exit_message = nullptr);
 
-/// Returns the processes of a communicator as ranks. `communicator`: its number from MPI_Comm_c2f. Throws
+/// Returns the processes of a communicator as ranks. `communicator`: its number, as MPI_Comm_c2f returns it. Throws
 /// std::runtime_error if MPI runs with a thread level below MPI_THREAD_SERIALIZED.
 std::unique_ptr<Ranks> join_mpi(int communicator);
 

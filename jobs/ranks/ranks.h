@@ -31,9 +31,9 @@ public:
 
     virtual int rank() const = 0;  // number of this rank, from 0
     virtual int size() const = 0;  // number of ranks
-    /// Sends out[i] to the rank peers[i], and receives one message from each of these ranks into in[i]. Each of these
-    /// ranks must name this rank in its own call. `peers` ascends and does not contain this rank. Not collective: ranks
-    /// without peers need not call.
+    /// Sends out[i] to the rank peers[i], and receives one message from the same rank into in[i]. Each of the peers
+    /// must name this rank in its own call. `peers` ascends and does not contain this rank. Not a collective function:
+    /// ranks without peers need not call it.
     virtual void exchange(std::span<const int> peers, std::span<const RankMessage> out, std::span<RankMessage> in) = 0;
     /// Collective. Combines the records of all ranks, which have equal sizes; afterwards each rank has the result.
     /// combine(into, from) must be associative and commutative to the last bit.
@@ -42,8 +42,8 @@ public:
     virtual std::vector<RankMessage> gather_everywhere(std::span<const std::byte> own_message) = 0;
     /// Collective. Returns the messages of all ranks on rank 0, and nothing on the other ranks.
     virtual std::vector<RankMessage> gather(std::span<const std::byte> own_message) = 0;
-    /// Prints `message` and ends all ranks with the exit code `code`, after an error that the other ranks do not know
-    /// of.
+    /// Prints `message` and ends all ranks with the exit code `code`. It is meant for errors that the other ranks do
+    /// not know of.
     [[noreturn]] virtual void abort(std::string_view message, int code) = 0;
 
     const RankTraffic& traffic() const { return traffic_; }

@@ -54,7 +54,7 @@ private:
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
             // `distance` is a lower bound for all points of the edge, so no point can touch in this step. scale.radii:
-            // if the edge is the axis of a capsule, the surface of the capsule is nearer by its radius.
+            // the edge may be the axis of a capsule, whose surface is nearer than the axis by the radius.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }
@@ -81,7 +81,8 @@ private:
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        // Depth of `contact.point.at`, which is the centre of the ball for a sphere or capsule, behind the face [m].
+        // Depth behind the face of contact.point.at [m]: a corner, a rim point, or the centre of a sphere or of an end
+        // of a capsule.
         const Real depth = -(contact.distance + contact.point.radius);
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;

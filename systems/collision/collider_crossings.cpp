@@ -15,9 +15,9 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// Tests one candidate for a crossing in this step. `least`: length of relative motion of body and collider up to
-    /// which the two features cannot touch, or up to which nodes in a flat region, which are candidates of their own,
-    /// would touch first [m]. Returns true if a full test was needed.
+    /// Tests one candidate for a crossing in this step. `least`: relative motion of body and collider up to which the
+    /// feature cannot touch the collider, except at its nodes, which are candidates of their own [m]. Returns true if a
+    /// full test was needed.
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
@@ -64,12 +64,13 @@ private:
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,
              const Touch& touch) {
-        // contact point and normal on the collider, moved back with the collider to its pose at the start of the step
+        // Contact point and normal on the collider, rotated and moved back with it to its pose at the start of the
+        // step.
         const Vec3 normal = pose_.rotation * touch.normal, point = to_world(pose_, touch.point);
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        // Height above the contact point, along the normal, at the start of the step, of the point of the feature that
-        // touches later [m].
+        // The point of the feature that makes the contact: its height above the contact point at the start of the step,
+        // along the normal [m].
         Real along = 0;
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;

@@ -53,22 +53,24 @@ ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind 
 /// number of the contact point among the points of this candidate, counted from 0.
 std::uint64_t feature_of_touch(const PairData& pair, std::uint64_t feature, Index number);
 
-// Upper limits of the argument `number` of feature_of_touch: touches_of_triangle for a cylinder and a triangle,
-// touches_of_shape for a cylinder and any other shape. The upper half of the latter range is used for crossings
-// (cylinder_crossings.cpp).
+// The argument `number` of feature_of_touch is below touches_of_triangle for a cylinder and a triangle, and below
+// touches_of_shape for a cylinder and any other shape. The upper half of the range below touches_of_shape is for
+// crossings (cylinder_crossings.cpp).
 inline constexpr Index touches_of_triangle = 64, touches_of_shape = 512;
 
 /// Contact stencil of a point and a triangle. `node`: node of the point, then nodes of the three corners. Corners with
-/// weight 0 are replaced by the node of the point, so that the contact does not make them part of its region.
+/// weight 0 are replaced by the node of the point. Otherwise two contacts that share only such a corner would be solved
+/// together (RegionTable).
 Stencil stencil_of_point(const std::array<Index, 4>& node, const std::array<Real, 3>& weight);
 
 /// Contact stencil of two edges. `node`: both nodes of the first edge, then both nodes of the second edge. Nodes with
-/// weight 0 are replaced by another node of the stencil, so that they do not become part of the contact region.
+/// weight 0 are replaced by another node of the stencil. Otherwise two contacts that share only such a node would be
+/// solved together (RegionTable).
 Stencil stencil_of_edges(const std::array<Index, 4>& node, const SegmentSegment& closest);
 
-/// Merges the rows of all blocks and the rows `more` into `merged`, in key order. The rows of the blocks, one block
-/// after the other, and the rows `more` must be in key order. If a block and `more` contain rows with the same key,
-/// only one of the two rows is used: the row of the block if `prefer_blocks` is true, else the row in `more`.
+/// Merges the rows of all blocks and the rows `more` into `merged`, in key order. The concatenated rows of the blocks
+/// must be in key order, and so must `more`. If a block and `more` contain rows with the same key, only one of the two
+/// rows is used: the row of the block if `prefer_blocks` is true, else the row in `more`.
 void merge_rows(const std::vector<Column<ContactRow>>& blocks, const Column<ContactRow>& more, bool prefer_blocks,
                 Column<ContactRow>& merged);
 

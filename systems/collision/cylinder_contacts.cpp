@@ -14,15 +14,16 @@ namespace skerry {
 
 namespace {
 
-// Lower bound of the greatest displacement of a rim node of a cylinder, divided by the greatest displacement of any rim
-// point. Travel is measured at nodes only, but a rim point between two nodes can move further than both.
+// Lower bound of the ratio between the greatest displacement of a rim node of a cylinder and the greatest displacement
+// of any rim point. The travel of a body is measured at its nodes only, but a rim point between two nodes can move
+// further than both nodes.
 constexpr Real rim_node_fraction = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
 // an edge touches the curved side of the cylinder along a part of its length, or not at all.
 constexpr Real parallel_sine = 1e-3;
 
-// The distance along an edge counts as constant if its derivative is below this limit.
+// The distance along an edge counts as constant at a point if the magnitude of its derivative is at most this value.
 constexpr Real straight_slope = 1e-7;
 
 // Numbers of the contact points between a cylinder and a triangle: 0 to 2 are the corners of the triangle. Then follow
@@ -53,17 +54,17 @@ public:
     Real least_distance() const { return smallest_distance_; }
 
 private:
-    /// Stores asleep_until of candidate c, the travel of the pair up to which the candidate needs no test. `distance`:
-    /// lower bound of the distance between the two surfaces [m]. Returns true if the contact points of the candidate
-    /// must be computed in this step.
+    /// Stores asleep_until of candidate c, the travel bound of the pair below which the candidate needs no test.
+    /// `distance`: lower bound of the distance between the two surfaces [m]. Returns true if the contact points of the
+    /// candidate must be computed in this step.
     bool store_distance(Index c, Real distance) {
         smallest_distance_ = std::min(smallest_distance_, distance);
         asleep_until[c] = travel_base + (distance > 0 ? rim_node_fraction : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
-    /// True if `bound`, a lower bound of the distance, shows that candidate c has no contact in this step; asleep_until
-    /// is then stored. If the result is false, the caller computes the contact points and stores asleep_until with the
-    /// sharper bound that follows from them.
+    /// True if `bound`, a lower bound of the distance, shows that candidate c has no contact in this step. Then
+    /// asleep_until is stored. Otherwise the caller computes the contact points, and stores asleep_until with the
+    /// sharper bound that follows from these points.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !store_distance(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
@@ -108,10 +109,10 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // A nearly flat edge makes a contact only with an end of the cylinder, or where it crosses the curved side
-            // and is perpendicular to the contact normal. Elsewhere the adjacent faces support the cylinder. A contact
-            // at the edge would act as a bump, for example if the edge is parallel to a rolling cylinder and ahead of
-            // it.
+            // The faces at a nearly flat edge have almost the same normal. Such an edge makes a contact only with an
+            // end of the cylinder, or where it crosses the curved side and is perpendicular to the contact normal.
+            // Elsewhere the faces support the cylinder. A contact at the edge would act as a bump, for example if the
+            // edge is parallel to a rolling cylinder and ahead of it.
             const CylinderRegion region = nearest_region(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
@@ -144,8 +145,8 @@ private:
         }
     }
 
-    /// True if a point of the cylinder has entered the body through the face of candidate c. If contacts and
-    /// find_crossings keep the two surfaces apart, no point can have entered, so the result is false.
+    /// True if a point of the cylinder has entered the body through the face of candidate c. The result is false if
+    /// contacts and find_crossings keep the two surfaces apart, because no point can have entered then.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return !held_apart && depth <= scale.face_depth && is_nearest(c, depth, [&](Index i) {
             const auto& node = inputs.surface.triangles.node[candidates[i].second];

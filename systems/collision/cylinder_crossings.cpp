@@ -17,10 +17,10 @@ namespace skerry {
 
 namespace {
 
-// First numbers of crossings (feature_of_touch), above the numbers that find_cylinder_contacts uses. A triangle has
-// eight numbers: three for its corners, three for its edges and two for the rims of the cylinder. Another shape has one
-// number for each contact point at the end of the step, from crossing_of_shape on, and the number crossing_during_step
-// for the first contact during the step.
+// Lowest values of the `number` (feature_of_touch) of a crossing, above the numbers that find_cylinder_contacts uses. A
+// triangle has eight numbers: three for its corners, three for its edges and two for the rims of the cylinder. Another
+// shape has one number for each contact point at the end of the step, from crossing_of_shape on, and the number
+// crossing_during_step for the first contact during the step.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::capacity,
                 crossing_during_step = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::capacity <= touches_of_shape);
@@ -121,7 +121,7 @@ private:
 
     /// If the shapes overlap at any contact point at the end of the step, adds all contact points whose distance is
     /// below the shell distance at this time, and returns true. Contacts at the overlapping points alone would let the
-    /// cylinder rotate and overlap at the other points.
+    /// cylinder rotate and overlap at the other points in the next attempt.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -167,7 +167,7 @@ private:
         const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
         return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
     }
-    /// Position at the start of the step of the point of the feature that touches the cylinder at the time hit.time
+    /// Position, at the start of the step, of the point of the feature that touches the cylinder at the time hit.time
     /// [m].
     static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
         Vec3 sum = Vec3::Zero();
@@ -250,9 +250,9 @@ private:
     /// [m]. `along` and `end_distance`: distances between the surfaces at the contact point at the start and at the end
     /// of the step [m].
     ///
-    /// If an earlier attempt at the step already had this contact and `end_distance` is still negative, the contact has
-    /// kept the gap open for a straight path of the contact point, but the rotation of the cylinder has closed it. The
-    /// distance of the contact is then reduced by the overlap.
+    /// A contact keeps a gap open for straight paths of its point, but a rotation of the cylinder may still close it.
+    /// So if an earlier attempt at the step already had this contact and `end_distance` is negative, the distance of
+    /// the contact is reduced by this overlap.
     void add_crossing(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm,
                       const Vec3& normal, Real along, const Vec3& surface_velocity, Real end_distance = 0) {
         const auto row_at = [&](Real distance) {
@@ -262,7 +262,8 @@ private:
                                stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
         // `along` is measured at the start of the step, but along the normal at the time of contact. If the shapes have
-        // rotated by more than a right angle in between, it can be negative although nothing overlapped at the start.
+        // rotated by more than a right angle in between, `along` can be negative although nothing overlapped at the
+        // start.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (end_distance < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -272,10 +273,10 @@ private:
         found.push_back(row);
     }
 
-    /// Distance that must remain between a feature and the cylinder. A feature counts as crossing only if the gap
-    /// becomes smaller than a tenth of the shell distance (contact_slack). A feature that a contact stops at the shell
-    /// distance therefore does not count. Without a shell distance, first_touch() uses a tenth of the distance at the
-    /// start of the step.
+    /// Threshold for the test of a feature. `radius`: radius of the sphere or capsule whose core is the feature, else
+    /// 0. The feature counts as crossing only if the gap becomes smaller than a tenth of the shell distance
+    /// (contact_slack). A feature that a contact stops at the shell distance therefore does not count. Without a shell
+    /// distance, first_touch() uses a tenth of the distance at the start of the step.
     ContactThreshold threshold(Real radius) const {
         return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity};
     }

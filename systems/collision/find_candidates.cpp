@@ -24,8 +24,8 @@ constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;
 // Numbers of bodies or pairs that one task processes in a few microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
 
-/// Marks the bodies or colliders whose distances from other objects are unknown (SearchState). With `all`, marks every
-/// object. Returns true if any object is marked.
+/// Marks the forgotten bodies or colliders: those that are new or that the user has moved, so that their distances from
+/// other objects are unknown (SearchState). With `all`, marks every object. Returns true if any object is marked.
 bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
     if (all) valid_until.clear();
     SKERRY_CHECK(valid_until.size() <= count);
@@ -36,7 +36,8 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
-/// Marks the forgotten bodies also in body_unmeasured, because their stored speeds are out of date.
+/// Marks the forgotten bodies also in body_unmeasured, because their stored speeds (max_speed and frame_speed of
+/// BodyTable) are out of date.
 void mark_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
     if (!memory.any_unmeasured) memory.body_unmeasured.clear();
@@ -92,8 +93,8 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     if (pairs.kind[p] == PairKind::collider) {
         pairs.travel[p] = inputs.body.travel[a] + inputs.body.frame[a].path + inputs.collider.travel[b];
         pairs.travel_bound[p] = memory.body_travel_bound[a] + memory.collider_travel_bound[b];
-        // The reach of the collider is computed again instead of as the difference travel_bound - travel. The travel of
-        // a rotating shape grows without limit, so the difference would have a large rounding error.
+        // The motion of the collider in this step is computed again, although it is also part of travel_bound - travel.
+        // The travel of a rotating shape grows without limit, so this difference would have a large rounding error.
         pairs.closing[p] = memory.body_reach[a] + collider_reach(inputs, b, memory.collider_extent[b], h);
         return;
     }
@@ -135,8 +136,8 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, const Colli
             pairs.rebuilt[p] = !is_valid(inputs, settings, h, static_cast<Index>(p), pairs);
         }
     });
-    // Every index is written, but kept only if the list of the pair has expired. This needs no branch, which would be
-    // hard to predict.
+    // Every index is written, but the next one overwrites it unless the list of the pair has expired. The loop thus
+    // needs no branch, which would be hard to predict.
     memory.expired.resize(pairs.size() + 1);
     std::size_t expired = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -154,7 +155,8 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, const Colli
     list_bodies(memory);
 }
 
-/// Computes the box and the bounding sphere of each body in an expired pair from the present node positions.
+/// Computes the box and the bounding sphere of each body in a pair whose candidate list has expired, from the present
+/// node positions.
 void fit_expired(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), bounds_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -225,7 +227,8 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
-/// Merges `found` into a candidate list, from the back and in place. Both are sorted by feature.
+/// Merges `found` into a candidate list; both are sorted by feature. The list is filled from its new end, so that no
+/// candidate is overwritten before it has been moved.
 void add_found(std::span<const FoundCandidate> found, Column<Candidate>& candidates, Column<Real>& asleep_until) {
     std::size_t kept = candidates.size(), added = found.size(), row = kept + added;
     candidates.resize(row);
@@ -250,7 +253,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     const bool compare_all = !(pairs.valid_until[p] > -infinity) || pairs.state[p] != PairState::apart;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // The test for crossing surfaces precedes the search, because surfaces that do not cross need a smaller search
-        // distance. A pair that is already known to be apart stays apart (PairTable::state).
+        // distance. The test is left out for a pair that is known to be apart, because it stays apart
+        // (PairTable::state).
         const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, box);
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
@@ -298,9 +302,9 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Requests that displacements of the bodies of expired pairs are measured from their present positions from now on. A
-/// list is valid for the travel m - 2 d (contact_reach.h), with the margin m and the displacement d. Bodies with a
-/// small d are left out, because a new origin would hardly prolong the validity of their lists.
+/// Requests that measure_displacement resets the displacements of the bodies in expired pairs to zero. A list is valid
+/// for the travel m - 2 d (contact_reach.h), with the margin m and the displacement d at the time of the search. Bodies
+/// with a small d are left out, because a reset would hardly prolong the validity of their lists.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real rebase_fraction = 0.25;

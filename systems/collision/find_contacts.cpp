@@ -17,10 +17,11 @@ namespace skerry {
 
 namespace {
 
-// candidates_per_block: work of one block; the unit is the test of one candidate of two surfaces. A block takes a
-// microsecond if no candidate can touch in this step, and a hundred microseconds if all must be tested.
-// candidates_worth_of_a_pair: fixed work per pair. candidates_worth_of_one_at_collider: work per candidate of a body
-// and a collider; it is more than 1, because only candidates of two surfaces are tested in groups of eight.
+// Amounts of work; the unit is the test of one candidate of two surfaces. candidates_per_block: work of one block. A
+// block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all must be tested.
+// candidates_worth_of_a_pair: work per pair, independent of its candidates. candidates_worth_of_one_at_collider: work
+// per candidate of a body and a collider; it is more than 1, because only candidates of two surfaces are tested in
+// groups of eight.
 constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
 constexpr Index candidates_worth_of_one_at_collider = 5;
@@ -51,8 +52,8 @@ std::int64_t work_of(const PairTable& pairs, std::size_t p) {
 }
 
 /// Marks pairs as idle if neither partner moves. Idle pairs are not tested: their last contacts remain valid, because
-/// bodies are only put to sleep in equilibrium. For all other pairs, counts the candidates and adds up their work by
-/// group of counted_pairs_per_block pairs.
+/// bodies are only put to sleep in equilibrium. Counts the candidates of all other pairs. Adds up the work of testing
+/// them for each group of counted_pairs_per_block consecutive pairs.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.test_count.resize(pairs.size());
@@ -71,8 +72,8 @@ void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pai
 }
 
 /// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work, and writes the
-/// start of each block and the end of the last one to pairs.block. Replaces the work of each group of pairs by the sum
-/// over the groups before it. Returns the number of blocks.
+/// start of each block and the end of the last one to pairs.block. Replaces the work of each group of pairs (mark_idle)
+/// by the sum over the groups before it. Returns the number of blocks.
 Index cut_blocks(Executor& executor, PairTable& pairs) {
     std::int64_t total = 0;
     for (std::int64_t& work : pairs.work) total += std::exchange(work, total);
@@ -96,7 +97,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
     return blocks;
 }
 
-/// Prefetches the beginning of the asleep_until column of a pair, which the test of a list reads first; the hardware
+/// Prefetches the beginning of the asleep_until column of a pair, which the test of the pair reads first; the hardware
 /// prefetches the rest. The columns are scattered in memory, and waiting for them would take a considerable part of the
 /// time of find_contacts.
 void prefetch_list(const PairTable& pairs, Index p) {

@@ -31,8 +31,8 @@ struct NearestPoints {
     Vec3 point;   // nearest point of the second feature [m]
 };
 
-// Bound of the relative rounding error of the distances in NearCandidate: vector code computes them, with other
-// rounding than the scalar code here. The actual error is much smaller.
+// Upper bound of the relative difference between the distances in NearCandidate, computed by vector code, and those
+// computed by the scalar code here, which rounds differently. The actual difference is much smaller.
 constexpr Real lane_rounding = 1e-6;
 
 /// Tests candidates of two surfaces for crossings.
@@ -41,16 +41,17 @@ public:
     SurfaceCrossings(const PairCrossings& pair, std::span<const Real> asleep_until)
         : PairCrossings(pair), asleep_until_(asleep_until) {}
 
-    /// Tests the candidates that can have met before the travel of the pair reaches `travel_bound` [m]. Returns the
-    /// number of tested candidates.
+    /// Tests the candidates of a range. `travel_bound`: upper bound of the travel of the pair at the end of this step
+    /// [m]. Candidates with a larger asleep_until are skipped, because their features cannot meet. Returns the number
+    /// of tested candidates.
     std::uint64_t run(Range range, Real travel_bound) {
         return count_tested(asleep_until_, range, travel_bound,
                             [&](Index c) { return test(candidates[c], asleep_until_[c] - travel); });
     }
 
     /// Tests the candidates that find_contacts has listed as near. No crossing is missed as long as the partners
-    /// approach by no more than find_contacts assumed (travel_bound at most PairTable::travel_bound). `reach`: bound of
-    /// the relative motion of the partners in the step [m].
+    /// approach each other by no more than find_contacts assumed (travel_bound at most PairTable::travel_bound).
+    /// `reach`: upper bound of the relative motion of the partners in the step [m].
     std::uint64_t run(std::span<const NearCandidate> near, Real reach, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
@@ -219,8 +220,8 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion self_motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
     // If PairTable::travel_bound has reached valid_until, find_candidates kept the list only because the spare
-    // distances of its pairs of leaves exceed the expected motion (is_valid, self_motion.h). They suffice if the nodes
-    // move as expected.
+    // distances of its pairs of leaves exceed the expected motion (is_valid, self_motion.h). The spare distances then
+    // suffice if the nodes move as expected.
     const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(self_motion, motion);
     return !within_reach && !holds_for_motion(self_motion, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
@@ -263,8 +264,7 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            // The state of a pair with a collider is not used, because the signed distance from the collider shows an
-            // overlap.
+            // A pair with a collider has no state: the signed distance from the collider shows whether they overlap.
             if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
             pairs.valid_until[p] = -infinity;  // an overlapping pair needs a list with a larger search distance

@@ -12,11 +12,12 @@ namespace skerry {
 /// zero if the step may be committed. Otherwise returns the number of crossings plus the number of pairs that move
 /// further than their candidate lists are valid for. Runs in parallel over the blocks of find_contacts.
 ///
-/// Tests only pairs with a contact distance whose surfaces are known to be apart. Without a contact distance, surfaces
-/// may touch, and a touch cannot be distinguished from a crossing. Skips all candidates of a pair in one block if the
-/// relative motion of the pair in this step is at most half of the least distance of the candidates of this block.
-/// Skips a single candidate if the motion is at most half of its distance. A slow scene therefore takes one comparison
-/// per pair and block. BodyTable::frame_speed must belong to velocity_next + push_out.
+/// Tests only pairs with a positive contact distance, and pairs of surfaces only if these are known to be apart.
+/// Without a contact distance, surfaces may touch, and a touch cannot be distinguished from a crossing. Skips all
+/// candidates of a pair in one block if the relative motion of the pair in this step is at most half of the least
+/// distance of the candidates of this block. Skips a single candidate if the motion is at most half of its distance. A
+/// slow scene therefore takes one comparison per pair and block. BodyTable::frame_speed must have been measured for the
+/// motion h (velocity_next + push_out).
 ///
 /// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
 /// features meet. If a pair moves further than its candidate list is valid for, and extends_lists is set, no features
@@ -27,8 +28,8 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
                      CrossingTable& crossings);
 
 /// Must be called after an attempt in which find_crossings has found crossings. Adds them to crossings.row, so that
-/// find_contacts adds these contacts in the next attempt at the step. After the last attempt (last_attempt) their pairs
-/// are marked as overlapping instead.
+/// find_contacts adds these contacts in the next attempt at the step. After the last attempt (last_attempt), marks the
+/// pairs of the crossings as overlapping instead.
 void use_crossings(PairTable& pairs, CrossingTable& crossings);
 
 }  // namespace skerry

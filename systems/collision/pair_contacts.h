@@ -15,9 +15,10 @@
 namespace skerry {
 
 /// Tests the candidates in `range` of the list of pair p, a body and an analytic collider. If use_budgets is set,
-/// candidates that cannot touch in this step are skipped. Returns the least distance of the tested features from the
-/// collider [m]. An edge or face in a flat region of the collider can touch only at its nodes, which are tested on
-/// their own. The distance that it can move within this region (flat_reach) is used for it, if larger.
+/// candidates that cannot touch in this step are skipped. Returns a lower bound of the distances of the tested features
+/// from the collider [m]. An edge or face in a flat region of the collider (flat_region) can touch only at its nodes,
+/// which are candidates of their own. Its distance counts as at least the distance that it can move within this region
+/// (flat_reach).
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
@@ -29,10 +30,11 @@ Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettin
 inline constexpr Index candidates_at_once = 16;
 
 // A triangle at the distance d' from a point counts as nearer than a triangle at the distance d only if d - d' exceeds
-// this fraction of d + mean edge length, a bound of the rounding errors.
+// this fraction of the sum of d and the mean edge length. Smaller differences may be rounding errors.
 inline constexpr Real nearer_fraction = 1e-9;
 
-/// Bit mask of the candidates that may touch in this step, for candidates_at_once candidates from index `begin` on.
+/// Bit mask for candidates_at_once candidates from index `begin` on: bit l is set if candidate begin + l may touch in
+/// this step.
 inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
     typedef Real InMemory __attribute__((vector_size(sizeof(KernelReal)), aligned(alignof(Real)), may_alias));
     constexpr auto lanes = static_cast<Index>(lanes_of<KernelReal>);
@@ -57,8 +59,8 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Limit [m]: features that are farther apart than this do not touch in this step, so their contact is not computed.
-/// `closing`: distance by which the partners may approach in this step [m].
+/// Upper limit of the distance at which a contact is computed [m]: features that are farther apart do not touch in this
+/// step. `closing`: distance by which the partners may approach in this step [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }
@@ -67,9 +69,11 @@ inline Real near_distance(const PairScale& scale, Real closing) {
 struct PairContacts : PairData {
     const CollisionSettings& settings;
     const Real h;
-    const Real travel_base;  // value of PairTable::travel from which `asleep_until` counts: T0 in contact_reach.h [m]
-    const Real near;         // contacts are computed up to this distance of the features (near_distance) [m]
-    const bool held_apart;   // true: contacts and find_crossings have kept the two surfaces apart
+    // T0 in contact_reach.h: features that are now at the distance d cannot meet while PairTable::travel_bound is below
+    // T0 + d [m].
+    const Real travel_base;
+    const Real near;        // features farther apart than this get no contact (near_distance) [m]
+    const bool held_apart;  // true: the surfaces cannot have passed through each other (is_held_apart)
     std::span<Real> asleep_until;
     Column<ContactRow>& found;
 
@@ -105,9 +109,10 @@ struct PairContacts : PairData {
             }
     }
 
-    /// True if the point of candidate c has no other candidate triangle at a distance below `depth`, the distance from
-    /// the triangle of candidate c [m]. Other triangles need no test, because all triangles within `depth` of the point
-    /// are candidates. `squared(i)`: squared distance from the point to the triangle of candidate i [m^2].
+    /// True if no other candidate triangle is nearer to the point of candidate c than the triangle of c. `depth`:
+    /// distance between this point and the triangle of c [m]. `squared(i)`: squared distance from the point to the
+    /// triangle of candidate i [m^2]. Only candidates are compared, because all triangles within `depth` of the point
+    /// are candidates.
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });

@@ -12,21 +12,22 @@
 
 namespace skerry {
 
-/// Tests candidates of pair p, which consists of a body and an analytic collider. Candidates in `range` are tested if
-/// they can have met before the travel of the pair reaches `travel_bound` [m]. Features that would cross are appended
-/// to `found` as contacts. Returns the number of tested candidates.
+/// Tests the candidates in `range` of pair p, a body and an analytic collider. `travel_bound`: upper bound of the
+/// travel of the pair at the end of this step [m]. Candidates with a larger asleep_until are skipped, because their
+/// features cannot meet. Features that would cross are appended to `found` as contacts. Returns the number of tested
+/// candidates.
 std::uint64_t find_collider_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, Column<ContactRow>& found);
 
-/// Variant of find_collider_crossings for a rigid cylinder and another body or an analytic collider. `known`: contacts
+/// Variant of find_collider_crossings for a rigid cylinder and another body or an analytic collider. `known`: crossings
 /// that earlier attempts at the step have found, in key order.
 std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
                                       Column<ContactRow>& found);
 
-/// Calls test(c) for those candidates c in a range that can have met before the travel of the pair reaches
-/// `travel_bound` [m]. test(c) returns false if a bound on the motion already excludes a crossing. Returns the number
-/// of calls that returned true.
+/// Calls test(c) for each candidate c in a range whose asleep_until is at most `travel_bound`, the upper bound of the
+/// travel of the pair at the end of this step [m]. The features of all other candidates cannot meet. test(c) returns
+/// false if a bound on the motion already excludes a crossing. The result is the number of calls that returned true.
 std::uint64_t count_tested(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& test) {
     std::uint64_t tested = 0;
     for (Index c = range.begin; c < range.end; ++c)

@@ -14,7 +14,8 @@ namespace skerry {
 
 namespace {
 
-// Rounding tolerance of the test whether faces lie between two points, as a fraction of the distance of the points.
+// Tolerance for rounding errors in is_in_sight: the tested segment ends short of the target by this fraction of its
+// length.
 constexpr Real sight_slack = 1e-6;
 
 /// Tests single candidates of two surfaces.
@@ -73,12 +74,12 @@ private:
             {contact.closest.on_second, contact.normal, contact.distance, scale.contact_distance - contact.slack});
     }
 
-    /// True if a point behind a triangle must be pushed out through this triangle: no other triangle of the body may be
-    /// nearer to the point. Otherwise the point is in front of the nearer triangle, outside a thin part of the body, or
-    /// must be pushed out through the nearer triangle.
+    /// True if a point behind a triangle has entered the body through this triangle, so that it must be pushed out
+    /// there. This is the case if no other triangle of the body is nearer to the point. If one is nearer, the point has
+    /// entered through that triangle, or it is in front of that triangle and thus outside a thin part of the body.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        // In self-contact, a point that was near the triangle in the rest shape may lie on the other side of a thin
-        // part.
+        // In self-contact, a point that was near the triangle in the rest shape may be on the other side of a thin part
+        // of the body.
         if (kind == PairKind::self && !was_far_at_rest(inputs, scale, point, corner)) return false;
         return is_nearest(c, depth, [&](Index i) {
             const auto& n = inputs.surface.triangles.node[candidates[i].second];
@@ -88,10 +89,10 @@ private:
         });
     }
 
-    /// The triangle of the candidate is the core (axis or centre) of a round body. True if this candidate makes the
-    /// contact with the point; several candidates can describe one contact. A vertex of a mesh touches only between the
-    /// ends of the axis, because each end has candidates with the faces of the mesh. Two round bodies whose ends are
-    /// nearest have two candidates, and one of them makes the contact.
+    /// True if `candidate`, whose triangle is the core (axis or centre) of a round body, makes a contact. Several
+    /// candidates can describe one contact, and only one of them makes it. A vertex of a mesh makes a contact only
+    /// between the ends of the axis, because each end has its own candidates with the faces of the mesh. If the ends of
+    /// two round bodies are nearest to each other, they have two candidates, and one of these makes the contact.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;
@@ -105,9 +106,9 @@ private:
     }
 
     /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `target`
-    /// of the other body. The round body then touches `target` from behind, because elements of the other body are
-    /// inverted there. This test replaces is_truly_behind for round bodies: they touch many faces at once, so a nearer
-    /// face excludes no contact.
+    /// on the surface of the other body. The round body then touches `target` from behind, because elements of the
+    /// other body are inverted there. This test replaces is_truly_behind for round bodies, which touch many faces at
+    /// once: a nearer face does not exclude a contact with a further one.
     bool is_in_sight(Index c, Index core, const Vec3& target) const {
         const Vec3& start = inputs.position[core];
         const Vec3 end = start + (1 - sight_slack) * (target - start);
@@ -135,7 +136,7 @@ void SurfaceContacts::add(Index p, Range range) {
             test();
             begin = 0;
         }
-        // Without the prefetch, each load of a candidate would have to wait for the previous one.
+        // The candidate is needed later (list_nodes). The prefetches load many candidates at the same time.
         __builtin_prefetch(list + c);
         row_[count_++] = c;
     });
@@ -180,8 +181,8 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
 }
 
 /// Tests those candidates of a pair that can touch if both bodies move at their greatest speeds. Appends candidates
-/// whose surfaces can meet in this step to near_. Stores for each candidate the travel up to which it needs no further
-/// test.
+/// whose surfaces can meet in this step to near_. Stores for each candidate the travel bound below which it needs no
+/// further test (asleep_until).
 void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Index p = awake.pair;
     const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],

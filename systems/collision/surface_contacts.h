@@ -12,11 +12,11 @@
 
 namespace skerry {
 
-/// Tests the candidates of several pairs together, because most pairs have few candidates; distances are computed for
-/// eight candidates at a time. Candidates whose gap may close within the step of length h are appended to `found` as
-/// contacts, in list order. Candidates that could meet within the step are appended to `near`, for find_crossings. For
-/// each tested candidate, asleep_until receives the value of PairTable::travel_bound up to which the candidate needs no
-/// further test (contact_reach.h).
+/// Tests the candidates of pairs of surfaces. Most pairs have few candidates, so the candidates of several pairs are
+/// collected, and their distances are computed eight at a time. A candidate whose gap (distance minus contact distance)
+/// may close within the step of length h is appended to `found` as a contact, in list order. A candidate whose features
+/// could meet within the step is appended to `near`, for find_crossings. For each tested candidate, asleep_until
+/// receives the value of PairTable::travel_bound below which the candidate needs no further test (contact_reach.h).
 class SurfaceContacts {
 public:
     SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
@@ -45,8 +45,7 @@ private:
         std::size_t count = 0;
         PerSlot<std::uint16_t> slot;
     };
-    /// The collected candidates of one pair, in the order of its list. Candidates of points and triangles precede
-    /// candidates of two edges.
+    /// The collected candidates of one pair, in the order of its list.
     struct AwakePair {
         Index pair;
         std::size_t begin, end;  // range of indices of these candidates among all collected candidates

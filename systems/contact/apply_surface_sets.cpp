@@ -16,8 +16,8 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t contacts_per_task = 256;
-// A direction whose projection onto the tangent plane is shorter than this fraction of its length counts as normal. It
-// has no tangent, so friction is isotropic.
+// If the projection of a direction onto the tangent plane is shorter than this fraction of its length, the direction
+// counts as perpendicular to the surface. It then has no tangent, so friction is isotropic.
 constexpr Real least_projection = 1e-6;
 
 enum class FeatureKind { vertex, edge, triangle };
@@ -40,8 +40,8 @@ public:
         const Feature first = first_feature(c), second = second_feature(c);
         if (first.set == no_index && second.set == no_index) return;
         const Index body = contacts_.first_body[c];
-        // If a collider specifies no friction, combine() uses the friction of `own`, which must therefore be the
-        // deformable body.
+        // If a collider specifies no friction, combine() uses only the friction of its argument `own`. So `own` must be
+        // the feature of the deformable body.
         if (is_body(body))
             combine(c, first, second);
         else
@@ -91,8 +91,8 @@ private:
         const std::uint64_t key = contacts_.key[c].feature;
         const Index first = contacts_.first_body[c], body = contacts_.second_body[c];
         if (contacts_.kind[c] == ContactKind::edge_edge) return feature(body, FeatureKind::edge, second_local(key));
-        // A face and a cylinder have up to touches_of_triangle contacts, which the key numbers consecutively
-        // (feature_of_touch).
+        // A face and a cylinder have up to touches_of_triangle contacts. The key contains touches_of_triangle times the
+        // number of the face, plus the number of the contact on the face (feature_of_touch).
         const bool cylinder = inputs_.body.core_nodes[first] == cylinder_core_nodes;
         return feature(body, FeatureKind::triangle, second_local(key) / (cylinder ? touches_of_triangle : 1));
     }
@@ -133,8 +133,9 @@ private:
         return {tangent / length, sets_.across[touched.set]};
     }
 
-    /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of carried()
-    /// over the faces at the feature that are in the set; if this sum is zero, over all faces at the feature.
+    /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of
+    /// carried(), the mapped direction on one face, over the faces at the feature that are in the set. If this sum is
+    /// zero, it is the sum over all faces at the feature.
     Vec3 present_direction(const Feature& touched) const {
         for (const bool in_set : {true, false}) {
             Vec3 sum = Vec3::Zero();

@@ -17,18 +17,18 @@ struct FrictionShape {
 };
 
 /// Geometric mean of the friction tensors A, B of two surfaces. Each tensor has the eigenvalues 1 and `across`. For 2x2
-/// matrices it is sqrt(a b) G / sqrt(det G) with G = A/a + B/b, a^2 = det A, b^2 = det B (Ando, Li and Mathias 2004).
-/// `scale`: larger eigenvalue of the mean. The friction coefficients along `axis` are those of isotropic friction times
-/// `scale`.
+/// matrices the mean is sqrt(a b) G / sqrt(det G) with G = A/a + B/b, a^2 = det A, b^2 = det B (Ando, Li and Mathias
+/// 2004). `scale`: larger eigenvalue of the mean. The friction coefficients along `axis` are those of isotropic
+/// friction times `scale`.
 struct MeanShape {
     FrictionAxis axis;
     Real scale = 1;
 };
 MeanShape mean_shape(const FrictionShape& first, const FrictionShape& second, const Vec3& normal);
 
-/// Overwrites friction, restitution and friction axes of contacts whose features belong to sets. A contact at a feature
-/// in two sets has the properties of the set that was added last. Returns false if there are no sets. Runs in parallel
-/// over blocks of contacts.
+/// Overwrites friction, restitution and friction axes of contacts whose features (vertices, edges, faces) belong to
+/// surface sets. A contact at a feature in two sets has the properties of the set that was added last. Returns false if
+/// there are no sets. Runs in parallel over blocks of contacts.
 bool apply_surface_sets(Executor& executor, const CollisionInputs& inputs, const SurfaceSetTable& sets,
                         const SetOfFeature& set_of, ContactTable& contacts);
 

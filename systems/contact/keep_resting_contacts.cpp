@@ -21,8 +21,8 @@ public:
     }
 
     /// Calls take(begin, end, idle) for the stored contacts of each pair of objects, which are rows begin .. end - 1 of
-    /// `kept`. `idle`: true if this step has left the pair out because neither partner moves. Stored contacts and pairs
-    /// are both in key order.
+    /// `kept`. `idle`: true if this step did not search for contacts of the pair, because neither partner moves. Stored
+    /// contacts and pairs are both in key order.
     void for_each_kept(const RestingContactTable& kept, auto&& take) const {
         const std::span<const ContactKey> key = kept.contact.key.span();
         std::size_t p = 0;

@@ -13,8 +13,8 @@
 namespace skerry {
 
 struct RestingInputs {
-    // Columns of PairTable. `pair`: ascending keys. `idle`: 1 for each pair that this step left out because neither
-    // partner moves.
+    // Columns of PairTable. `pair`: ascending keys. `idle`: 1 for each pair for which this step did not search for
+    // contacts, because neither partner moves.
     std::span<const std::uint64_t> pair;
     std::span<const std::uint8_t> idle;
     std::span<const std::uint8_t> asleep;  // by body: 1 if it is asleep after the step
@@ -33,7 +33,7 @@ struct RestingInputs {
     }
 };
 
-/// Working memory of keep_resting_contacts, reused in later steps.
+/// Working memory of keep_resting_contacts, reused in later steps. `next` becomes the new table of stored contacts.
 struct RestingMemory {
     // Source of each row of `next`: r for row r of the stored contacts, or ~r for row r of this step's contacts.
     Column<Index> source;
@@ -42,8 +42,8 @@ struct RestingMemory {
 
 /// Updates the stored contacts between sleeping bodies after a step. `kick`: time for which forces acted in this step
 /// [s]. Contacts of this step are stored if both partners are asleep or do not move. Contacts that are already stored
-/// remain if this step has left out their pair. Returns false if nothing changes, which is found in one pass over the
-/// contacts and one over the pairs.
+/// remain if their pair is idle (RestingInputs::idle). Returns false if nothing changes. This check takes one pass over
+/// the contacts and one over the pairs.
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 

@@ -8,9 +8,9 @@
 namespace skerry {
 namespace {
 
-// `min_shift`: the smallest block has 2^min_shift contacts, which take a few microseconds, about as long as it
-// takes a worker to start. `max_blocks`: largest number of blocks. It is small, because BlockTable has an
-// entry for each pair of blocks.
+// `min_shift`: the smallest block has 2^min_shift contacts. They take a few microseconds, about as long as a worker
+// takes to start. `max_blocks`: upper limit of the number of blocks. It is small, because BlockTable has an entry for
+// each pair of blocks.
 constexpr std::size_t min_shift = 7, max_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.
@@ -41,7 +41,7 @@ public:
         entry_.assign(blocks * blocks, 0);
     }
     /// Table entries for the contacts of `block`, indexed by the block in which the region of a contact begins. Entries
-    /// for later blocks are unused, because no region begins after its contacts.
+    /// for later blocks are unused, because a region begins at its first contact.
     Index* row(std::size_t block) { return entry_.data() + block * blocks_; }
 
     /// Replaces the counts in the table by indices in a list of all contacts. The list is sorted by the block in which
@@ -91,7 +91,7 @@ template <class Leader>
 void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil> stencil,
                std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets,
                std::span<Index> contact_node) {
-    constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
+    constexpr std::size_t ahead = 12;  // prefetch the data of the contact that comes this many contacts later
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         const auto fetch = [&](const Stencil& next) {
             for (const Index node : next.node) {

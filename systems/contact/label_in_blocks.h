@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// Working memory that is reused in later steps.
+/// Working memory that is reused in later steps. A block is a range of consecutive contacts, which one task processes.
+/// A region begins in the block that contains its first contact.
 struct BlockLabels {
     SharedUnionFind sets;
     Column<Index> by_block;  // contacts, sorted by the block in which the region of a contact begins

@@ -9,8 +9,10 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t contact_block = 512;  // contacts per task; finding their old impulses takes about 5 us
-// Contacts per task. Copying them takes about 5 us if other cores wrote them, because their data are in other caches.
+// Contacts per task. Finding their impulses of the last step takes about 5 us.
+constexpr std::size_t contact_block = 512;
+// Contacts per task. Copying them takes about 5 us if other cores wrote them, because the data are then in the caches
+// of these cores.
 constexpr std::size_t stored_block = 512;
 
 /// Rotates an impulse by the smallest rotation that takes the unit normal `from` to the unit normal `to`, so that the
@@ -18,7 +20,7 @@ constexpr std::size_t stored_block = 512;
 /// result is zero.
 Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     const Real cosine = from.dot(to);
-    // Least cosine of the rotation angle; below it rounding errors would determine the axis.
+    // Lower limit of the cosine of the rotation angle. Below it, rounding errors would determine the axis.
     constexpr Real flipped = -0.999;
     if (!(cosine > flipped)) return Vec3::Zero();
     const Vec3 axis = from.cross(to);  // length sin(angle)
@@ -108,7 +110,8 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
                       std::span<Vec3> impulse) {
     if (last.point.empty() || now.key.empty()) return false;
     SKERRY_CHECK(last.point.size() == last.key.size() && impulse.size() == now.key.size());
-    // between the normals of the vanished contact and of the contact that takes over its impulse
+    // Lower limit of the cosine between the normals of the vanished contact and of the contact that takes over its
+    // impulse.
     constexpr Real least_cosine = 0.9;
     const Real scale = kick / last.step[0];
     const auto pass_on = [&](std::size_t vanished, Rows rows, Real reach) {

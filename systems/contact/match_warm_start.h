@@ -43,9 +43,10 @@ struct ContactsNow {
     }
 };
 
-/// Adds the impulse of each vanished contact to a contact of the same pair: the nearest one within twice the contact
-/// distance whose normal is similar. Pairs without a rigid or implicit body are left out. Call it after
-/// match_warm_start. Returns false if there is nothing to do (skipped). Parallel over blocks of pairs.
+/// Adds the impulse of each vanished contact (one of the last step that no longer exists) to a contact of the same
+/// pair: the nearest one within twice the contact distance whose normal is similar. Pairs without a rigid or implicit
+/// body are left out. Call it after match_warm_start. Returns false if there is nothing to do (skipped). Parallel over
+/// blocks of pairs.
 ///
 /// The reason: two flat faces have more contacts than degrees of freedom, and rounding makes contacts come and go. The
 /// part of the load that a vanished contact carried would otherwise be lost.
@@ -59,8 +60,8 @@ struct ContactsDone {
     std::span<const Vec3> impulse;     // [N s]
     std::span<const Vec3> point = {};  // contact points; empty if no body is rigid or implicit [m]
 
-    /// `frames_on_ranks`: true if any rank has a rigid or implicit body. All ranks then store the points, because their
-    /// contacts may move to other ranks.
+    /// `frames_on_ranks`: true if any rank (process of a parallel run) has a rigid or implicit body. All ranks then
+    /// store the points, because their contacts may move to other ranks.
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid,
                              const bool& frames_on_ranks) {
         return {

@@ -18,8 +18,9 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
     return sum;
 }
 
-/// Size of the tangential impulse in the sense of the friction law. For the cone it is the length, for the pyramid the
-/// larger of the two tangential components. With a friction axis, the component across it is divided by `across`.
+/// Size of the tangential impulse, as the friction law compares it with its limit. For the cone it is the length, for
+/// the pyramid the larger of the two tangential components. With a friction axis, the component across the axis is
+/// divided by `across`, because its limit is smaller by this factor.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, const FrictionAxis& axis, Friction friction) {
     if (axis.across != 1) {
         const Real along = tangential.dot(axis.direction);
@@ -34,8 +35,9 @@ ContactState state_of(const ContactTable& contacts, std::size_t i, Friction fric
     const Vec3 &impulse = contacts.impulse[i], &normal = contacts.normal[i];
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. It stays there
-    // when the warm start rotates it, because the ratio of tangential to normal impulse does not change.
+    // The solver puts the impulse of a sliding contact onto the limit of dynamic friction, up to rounding. If the warm
+    // start is the solution, the impulse of the last step has only been rotated with the normal. The rotation keeps the
+    // ratio of tangential to normal impulse, so the impulse stays on the limit.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, contacts.friction_axis[i], friction);
     const Real limit = contacts.dynamic_friction[i] * along;
@@ -83,7 +85,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
     const TouchPoints places{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // The contacts are divided into a limited number of parts, so that the sums over each part need no allocation. The
-    // borders of the parts depend only on the number of contacts.
+    // borders of the parts, and thus the bits of the sums, depend only on the number of contacts.
     constexpr std::size_t part_limit = 64, smallest_part = 128;
     const std::size_t part_size = std::max(smallest_part, (count + part_limit - 1) / part_limit);
     std::array<ContactMeasures, part_limit> parts{};

@@ -9,20 +9,21 @@
 namespace skerry {
 
 struct ContactMeasures {
-    Real max_penetration = 0;    // greatest penetration: overlap of the surfaces, -distance [m]
-    Real max_gap_violation = 0;  // greatest depth inside the contact distance, -gap [m]
-    // Dissipated energy: -sum of impulse . (relative velocity before + relative velocity after the solve) / 2 [J].
+    Real max_penetration = 0;    // greatest overlap of two surfaces: -distance [m]
+    Real max_gap_violation = 0;  // greatest amount by which a distance is below the contact distance: -gap [m]
+    // Dissipated energy: -sum of impulse . (v_before + v_after) / 2, where v_before and v_after are the relative
+    // velocities at a contact before and after the solve [J].
     Real dissipated = 0;
-    // Impulse and work that the moving nodes get from colliders and held nodes. Their momentum grows by outer_impulse,
-    // their energy by outer_work - dissipated.
+    // Impulse and work that the moving nodes get from colliders and held nodes. The momentum of the moving nodes grows
+    // by outer_impulse, their energy by outer_work - dissipated.
     Vec3 outer_impulse = Vec3::Zero();  // [N s]
     Real outer_work = 0;                // [J]
     Index stick_count = 0;
     Index slide_count = 0;
 };
 
-/// Spins of round bodies before and after the solve. Spin adds to the velocity of the surface at a contact; the
-/// velocity of the core nodes does not contain it.
+/// Spins (angular velocities) of round bodies before and after the solve. The surface of a round body moves at the
+/// velocity of its core nodes (centre or axis) plus a part due to the spin.
 struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};

@@ -1,4 +1,4 @@
-// Impulses and work of ties after the solve, and their breaking.
+// Measures ties after the solve: their impulses and work, and which tied nodes break off.
 #pragma once
 
 #include <span>
@@ -14,8 +14,9 @@
 namespace skerry {
 
 struct TieMeasures {
-    Vec3 impulse = Vec3::Zero();  // impulse that ties transmit from the world, colliders and held nodes [N s]
-    Real work = 0;                // work of ties on all moving nodes and bodies [J]
+    // impulse that moving nodes get through ties from the world, colliders and held nodes [N s]
+    Vec3 impulse = Vec3::Zero();
+    Real work = 0;  // work of ties on all moving nodes and bodies [J]
 };
 
 /// Nodes and bodies after the solve.
@@ -39,13 +40,14 @@ struct TieWorkInputs {
     }
 };
 
-/// Removes the rows of ties from the end of the contacts after the solve, and stores their impulses in `rows`. Returns
-/// sums over these rows and over the ties in `blocks`. Nodes of ghosts (bodies that other ranks own) do not count.
-/// Sequential, in row order.
+/// Removes the rows of tied nodes, which follow the contacts in `contacts` during the solve, and stores their impulses
+/// in `rows`. Returns sums over these rows and over the ties of the kind `ball`, which are in `blocks`. Nodes of ghosts
+/// (bodies that other ranks own) do not count. Sequential, in row order.
 TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& blocks, ContactTable& contacts,
                           TieRowTable& rows);
 
-/// Solved ties of the kind `ball`, and the columns needed to divide their impulses among nodes by mass.
+/// Data of the solved ties of the kind `ball`, whose impulse acts on the mean of their nodes. `mass` serves to divide
+/// the impulse among the nodes.
 struct TiedMeans {
     const CableBlockTable& blocks;
     std::span<const Range> body_nodes, body_implicit;  // BodyTable
@@ -66,7 +68,7 @@ struct TieTimes {
     Real end = 0, h = 0, kick = 0;
 };
 
-/// Stores the impulses and the largest forces of a committed step. A node breaks off if its force exceeds the limit of
+/// Stores the impulses and the largest forces of an accepted step. A node breaks off if its force exceeds the limit of
 /// its tie; a tie of the kind `ball` breaks as a whole. Returns the number of ties that have lost their last node in
 /// this step.
 Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties);

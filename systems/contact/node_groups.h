@@ -1,4 +1,5 @@
-// Groups of nodes that move together: the nodes of a rigid body, and the nodes of a cluster.
+// Groups of nodes whose velocities are coupled: the nodes of a rigid body, and the nodes of a cluster (nodes with a
+// common inertia matrix).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,8 +20,8 @@
 
 namespace skerry {
 
-/// Contact points and distances of ContactTable. They are read only for cylinders, whose surface points do not follow
-/// from the normal alone.
+/// Contact points and distances of ContactTable. Only cylinders need them, because the surface points of a cylinder do
+/// not follow from the normal alone.
 struct TouchPoints {
     std::span<const Vec3> point{};
     std::span<const Real> distance{};
@@ -38,10 +39,10 @@ struct TouchPoints {
 struct RigidNodes {
     std::span<const Index> node_body;      // NodeTable
     std::span<const Range> body_nodes;     // BodyTable
-    std::span<const Range> body_rigid;     // column of BodyTable; empty if no body is rigid
-    std::span<const Real> round_radius{};  // column of BodyTable; empty if no body is round
-    std::span<const Index> core_nodes{};   // column of BodyTable; empty if no body is round
-    std::span<const Vec3> center{};        // column of RigidBodyTable; empty if no body is round
+    std::span<const Range> body_rigid;     // column of BodyTable; empty if no body is rigid or implicit
+    std::span<const Real> round_radius{};  // column of BodyTable; empty if no body is rigid or implicit
+    std::span<const Index> core_nodes{};   // column of BodyTable; empty if no body is rigid or implicit
+    std::span<const Vec3> center{};        // column of RigidBodyTable; empty if no body is rigid or implicit
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
@@ -148,7 +149,8 @@ struct SolvedCables {
     }
 };
 
-/// All groups of nodes, the joints and the cables. No node is in a rigid body and in a cluster at the same time.
+/// Connections between nodes, for the search for contact regions: groups of nodes, joints and cables. No node is in a
+/// rigid body and in a cluster at the same time.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none
     RigidNodes rigid{};
@@ -161,8 +163,8 @@ struct NodeGroups {
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints,
                            const CableBlockTable& cables, const Column<std::uint8_t>& elsewhere) {
-        // Only these columns are declared as read. The matrices of the clusters are not read, so other tasks may write
-        // them.
+        // Only these columns are declared as read. The matrices of the clusters are not read here, so other tasks may
+        // write them at the same time.
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
@@ -183,7 +185,8 @@ struct NodeGroups {
     }
     /// The first node of the group that contains `node`; `node` itself if it belongs to no group.
     Index leader(Index node) const { return rigid.leader(clusters == nullptr ? node : clusters->leader(node)); }
-    /// Joins the sets of the nodes that a cable connects, for each cable.
+    /// For each cable, joins the sets of the nodes that it connects. `sets`: union-find structure; each of its sets
+    /// becomes a contact region.
     void join_cables(std::span<const Real> inverse_mass, auto& sets) const {
         for (std::size_t c = 0; c < cables.block.size(); ++c) {
             Index first = no_index;
@@ -193,8 +196,8 @@ struct NodeGroups {
             });
         }
     }
-    /// Sets contact_region to no_index for the rows that another rank solves. Only rows of ties and of held nodes are
-    /// concerned, because contacts with moving nodes have been sent to that rank.
+    /// Sets contact_region to no_index for the rows that another rank (process) solves. Such rows belong to ties, or to
+    /// contacts of held nodes: contacts of moving nodes have already been sent to that rank.
     void leave_out_other_ranks(std::span<const Stencil> stencil, std::span<Index> contact_region) const {
         if (elsewhere.empty()) return;
         for (std::size_t i = 0; i < stencil.size(); ++i)

@@ -51,13 +51,14 @@ Mat3 mesh_axes(const TieInputs& ties, Index frame) {
 
 /// Motion of a point that moves with the frame of a body, after the kick (the velocity change by forces).
 struct FrameMotion {
-    Vec3 turning = Vec3::Zero();       // part of the velocity that stems from the spin [m/s]
+    Vec3 turning = Vec3::Zero();       // part of `velocity` that stems from the spin of the body [m/s]
     Vec3 velocity = Vec3::Zero();      // [m/s]
     Vec3 acceleration = Vec3::Zero();  // due to the rotation of the frame [m/s^2]
 };
 
-/// `node`: row of NodeTable of the node at the point, whose velocity relative to the frame gives the Coriolis
-/// acceleration. no_index: the point is fixed to the frame.
+/// Motion of `point` with the frame in row `frame` of RigidBodyTable. `node`: row of NodeTable of the node at the
+/// point. Its velocity relative to the frame gives the Coriolis acceleration. no_index: the point is fixed to the
+/// frame.
 FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, Index node) {
     FrameMotion at;
     if (frame == no_index) return at;
@@ -117,8 +118,8 @@ TiedPoint mean_of_points(const TieInputs& ties, std::size_t t) {
     return mean;
 }
 
-/// Equation of one tied node, or of the mean point of a tie of the kind `ball`. `k`: row of the node in the columns of
-/// TieTable that have one entry per tied node; for a `ball` the row of its first node.
+/// Equation of one tied node, or of the mean point of the nodes of a tie of the kind `ball`. `k`: row of the node in
+/// the columns of TieTable that have one entry per tied node; for a `ball` the row of its first node.
 class TieRow {
 public:
     /// `weight`: weight of node `k` in the stencil; 0 for a mean point, whose nodes have stencils of their own.
@@ -176,6 +177,7 @@ private:
 };
 
 /// Key of the row of a tied node. It is greater than all keys of contacts, because bit 63 of ContactKey::pair is set.
+/// So the rows of ties follow the contacts in key order.
 ContactKey key_of(const TieTable& tie, std::size_t t, std::size_t k) {
     constexpr std::uint64_t of_ties = std::uint64_t{1} << 63;
     return {of_ties | tie.slot[t], static_cast<std::uint64_t>(k) - static_cast<std::uint64_t>(tie.nodes[t].begin)};
@@ -199,8 +201,9 @@ ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, con
             .collider = tie.collider[t]};
 }
 
-/// Appends a block for the equation of the mean point of a tie, unless impulses can move none of its nodes. The points
-/// of the block are stencils. Each combines up to four tied nodes; the last one consists of nodes of the other object.
+/// Appends a block for the equation of the mean point of a tie, if impulses can move at least one of its nodes. The
+/// points of the block are stencils. Each combines up to four tied nodes; the last one consists of nodes of the other
+/// object.
 void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real scale, CableBlockTable& blocks) {
     const TieTable& tie = ties.tie;
     const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);
@@ -223,7 +226,7 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
         four.weight[count] = share;
         if (++count == 4) end_point();
     });
-    // Each point of a block stores one number of the impulse, which has three components. So at least three points are
+    // A block has one impulse number per point. The impulse of a tie has three components, so at least three points are
     // needed.
     while (count > 0 || static_cast<Index>(blocks.stencil.size()) < begin + 2) end_point();
     append(row.stencil(), -row.demanded());

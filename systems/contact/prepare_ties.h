@@ -87,7 +87,7 @@ struct TieInputs {
     /// Row of NodeTable of a node that is numbered as in the mesh of its body.
     Index row_of(Index body, Index node) const { return body_nodes[static_cast<std::size_t>(body)].begin + node; }
     std::span<const Index> nodes_of(std::size_t t) const { return rows_of(tie.node.span(), tie.nodes[t]); }
-    /// True if the tie holds, and is fixed to a collider that moves in this step.
+    /// True if the tie is not broken, and is fixed to a collider that moves in this step.
     bool is_led(std::size_t t) const {
         const Index collider = tie.collider[t];
         return collider != no_index && !motion[static_cast<std::size_t>(collider)].stands_still() && tie.holds(t);
@@ -106,8 +106,8 @@ struct TieInputs {
         return mean;
     }
     /// Point of the other object to which tied node `k` is tied, at the start of the step. `k`: row of the node in the
-    /// columns of TieTable that have one entry per tied node; for the mean point of a `ball` the row of its first node.
-    /// `t`: row of the tie.
+    /// columns of TieTable that have one entry per tied node. A tie of the kind `ball` ties only the mean point of its
+    /// nodes; `k` is then the row of its first node. `t`: row of the tie.
     TieTarget target(std::size_t t, std::size_t k) const;
 };
 
@@ -117,7 +117,7 @@ Mat3 triangle_axes(const std::array<Vec3, 3>& corner);
 /// Times and solver settings of a step. `h`: step length [s]. `kick`: time for which forces act [s].
 struct TieStep {
     Real h = 0, kick = 0;
-    Real recovery_speed = 0;  // greatest speed at which position errors are corrected [m/s]
+    Real recovery_speed = 0;  // upper limit of the speed at which position errors are corrected [m/s]
     WarmStart warm_start = WarmStart::on;
 };
 
@@ -127,7 +127,7 @@ struct TieStep {
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
                   CableBlockTable& blocks);
 
-/// Sets the mark of each body that is tied to a moving collider to 1. Returns false if there is no such body.
+/// Sets `marked` to 1 for each body that is tied to a moving collider. Returns false if there is no such body.
 bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked);
 
 }  // namespace skerry

@@ -38,7 +38,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     for (const JointBlock& joint : groups.joints)
         joint.join_nodes([&](Index first, Index second) { sets.join(first, second); });
     groups.join_cables(inverse_mass, sets);
-    constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
+    constexpr std::size_t ahead = 12;  // prefetch the data of the contact that comes this many contacts later
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
             sets.fetch(node);
@@ -91,7 +91,7 @@ void collect_contacts(std::span<const Index> contact_region, Index region_count,
         contact_region.size(), [&](std::size_t i) { return contact_region[i]; }, region_count, regions.contacts);
 }
 
-/// Sorts the joints and the cables by region. `number(node)`: the region of a joint or cable that acts on `node`.
+/// Sorts the joints and the cables by region. `number(node)`: region of the joints and cables that act on `node`.
 /// Returns the number of regions, including regions that have no contacts.
 template <class Number>
 Index collect_connections(const NodeGroups& groups, std::span<const Real> inverse_mass, const Number& number,
@@ -129,8 +129,9 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set of nodes without contacts is given a number above all contact indices in place of a first contact. The
-    // numbers ascend in the order in which the sets are met, and their regions follow the regions with contacts.
+    // Joints or cables may connect a set of nodes that has no contact. In place of its first contact, such a set gets a
+    // number above all contact indices. These numbers ascend in the order in which the sets are met, and the regions of
+    // these sets follow the regions with contacts.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// The partners of a contact, and whether they are swapped: true if the first body of the contact is the second
+/// The partners of a contact, and whether they are swapped: true if the first body of the contact is not the first
 /// partner.
 std::pair<ContactPartners, bool> partners_of(const ContactSumInputs& contacts, std::size_t c) {
     const Index first = contacts.first_body[c], second = contacts.second_body[c];

@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Partners of a contact: a body and a collider, two bodies, or a body and itself. If there are two bodies, the one
-/// with the lower handle slot comes first. `collider` is a row of ColliderTable, also for a mesh collider.
+/// Partners of a contact: a body and a collider, two bodies, or a body and itself. Of two bodies, the one with the
+/// lower number BodyTable::slot comes first. `collider` is a row of ColliderTable, also for a mesh collider.
 struct ContactPartners {
     Index first = no_index;     // row of BodyTable; a deformable body
     Index second = no_index;    // row of BodyTable; a deformable body, or no_index
@@ -24,9 +24,9 @@ struct ContactPartners {
     bool operator==(const ContactPartners&) const = default;
 };
 
-/// Sums of impulses and moments over contacts. The moments on the two partners do not add up to zero, because friction
-/// acts across the distance of their surfaces. Each moment is computed at the nodes of a body, or at the contact point
-/// on a collider, so that it equals the change of angular momentum of that partner.
+/// Sums of impulses and moments over contacts. The moment on each partner equals the change of its angular momentum: on
+/// a body the impulses act at its nodes, on a collider at the contact point. The two moments do not add up to zero,
+/// because friction acts at two points that are a small distance apart.
 struct ContactSums {
     Vec3 impulse = Vec3::Zero();        // impulse on the first partner [N s]
     Vec3 first_moment = Vec3::Zero();   // moment on the first partner [N m s]

@@ -12,8 +12,8 @@ struct TangentFrame {
 };
 
 /// Unit tangents that form a right-handed frame (normal, first, second) with the unit normal. The method is from Duff
-/// et al. 2017, "Building an orthonormal basis, revisited". It has no branch, and is continuous except at z = 0. For
-/// the normal (0, 0, 1) the tangents are the x and y axes.
+/// et al. 2017, "Building an orthonormal basis, revisited". It has no branch, and is continuous except where the z
+/// component of the normal is 0. For the normal (0, 0, 1) the tangents are the x and y axes.
 inline TangentFrame tangent_frame(const Vec3& normal) {
     const Real sign = std::copysign(Real(1), normal.z());
     const Real a = -1 / (sign + normal.z());

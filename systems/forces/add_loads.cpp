@@ -55,7 +55,7 @@ void add_field(const LoadInputs& loads, std::size_t load, Real scale, BodyField&
             sum.acceleration += scale * loads.vector[load];
             break;
         case LoadKind::gravity:
-            // The forces of the step contain the weight itself, so only the difference is added.
+            // The step adds the weight (gravity with the factor 1) elsewhere, so only the difference is added here.
             sum.acceleration += (scale - 1) * loads.gravity;
             break;
         case LoadKind::drag:

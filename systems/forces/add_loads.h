@@ -1,4 +1,5 @@
-// Force element: loads on nodes and faces, and force fields, with scales that change over time (docs/methods/loads.md).
+// Force element (part of a step that adds forces to nodes): loads on nodes and faces, and force fields, with scales
+// that change over time (docs/methods/loads.md).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ struct ForceIntervals {
     Real begin_implicit = 0, length_implicit = 0;  // for implicit bodies [s]
 };
 
-/// Sum of the fields on a body: the force on a node of mass m and velocity v is m (acceleration - drag v).
+/// Sum of all force fields that act on a body. The force on a node of mass m and velocity v is m (acceleration - drag
+/// v).
 struct BodyField {
     Vec3 acceleration = Vec3::Zero();  // [m/s^2]
     Real drag = 0;                     // [1/s]
@@ -75,8 +77,8 @@ struct LoadInputs {
     bool is_on_present_area(std::size_t load) const {
         return kind[load] == LoadKind::traction && area[load] == LoadArea::present;
     }
-    /// Calls visit(first, corners) for each face of a traction on the present area: the row of its first node in
-    /// `share_node`, and the present positions of its nodes as columns [m].
+    /// Calls visit(first, corners) for each face of a traction on the present area. `first`: index in `share_node` of
+    /// the first of the three nodes of the face. `corners`: present positions of these nodes as columns [m].
     void for_each_face(std::size_t load, auto&& visit) const {
         const std::span<const Vec3> node_position =
             rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
@@ -91,14 +93,14 @@ struct LoadInputs {
 };
 
 /// Adds the forces of all loads to `applied_force`, by node [N]. A scale that changes over time acts with its exact
-/// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag is
-/// computed from the velocities, and a traction on the present area from the positions, at the start of the step.
-/// Parallel over nodes: loads on nodes are added in the order of LoadTable, and then the sum of all fields. `fields`:
-/// working memory. Returns false if there is no load.
+/// mean in the force interval of the step. The impulses of all steps thus sum to the time integral of the load. Drag is
+/// computed from the velocities, and a traction on the present area from the positions, at the start of the step. Loads
+/// on nodes are added in the order of LoadTable, then the sum of all fields. Parallel over nodes, except for tractions
+/// on the present area. `fields`: working memory. Returns false if there is no load.
 bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
 
-/// Bound on the increase of omega^2 by a traction on the present area of an explicit body (docs/methods/loads.md 2)
-/// [1/s^2]. `inverse_mass`: by node [1/kg].
+/// Upper bound on the increase of omega^2 by a traction on the present area. omega is the highest circular frequency of
+/// the explicit body (docs/methods/loads.md 2) [1/s^2]. `inverse_mass`: by node [1/kg].
 Real traction_rate(const LoadInputs& loads, std::size_t load, std::span<const Real> inverse_mass);
 
 /// The columns from which mark_loaded finds the bodies whose loads change.
@@ -116,8 +118,8 @@ struct LoadedBodies {
     }
 };
 
-/// Marks each body with a load whose scale changes in the step of length `h` [s] that starts at the time `t` [s].
-/// Returns false if no load changes.
+/// Marks each body with a load whose scale changes in the step of length `h` [s] that starts at the time `t` [s]: these
+/// bodies must not sleep. Returns false if no load changes.
 bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked);
 
 }  // namespace skerry

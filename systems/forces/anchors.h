@@ -1,5 +1,5 @@
-// Position and velocity of anchors, and the distribution of forces at anchors to nodes. An anchor is a point on a body,
-// on a collider or fixed in the world to which a spring or cable is attached.
+// Position and velocity of anchors, and the distribution of forces at anchors to nodes. An anchor is a point to which a
+// spring or cable is attached. It is on a body, on a collider or fixed in the world.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Anchors, and the columns that determine their positions. Bodies of every kind have node positions and velocities in
-/// NodeTable, so the functions below need not distinguish kinds of bodies.
+/// Anchors, and the columns that determine their positions. NodeTable contains the node positions and velocities of
+/// bodies of every kind, also of rigid ones. So the functions below need not distinguish kinds of bodies.
 struct AnchorInputs {
     std::span<const Index> body, collider;  // AnchorColumns
     std::span<const AnchorRow> point;
@@ -33,8 +33,8 @@ struct AnchorInputs {
                 .motion = binder.read(colliders.motion)};
     }
 
-    /// Calls visit(node, weight) for each node that moves an anchor: the nodes of its body with a nonzero weight.
-    /// `node` is a row of NodeTable.
+    /// Calls visit(node, weight) for each node that moves an anchor: each node with a nonzero weight in the anchor.
+    /// Visits nothing if the anchor is not on a body. `node` is a row of NodeTable.
     void for_each_node(std::size_t anchor, auto&& visit) const {
         if (body[anchor] == no_index) return;
         const Index first = body_nodes[static_cast<std::size_t>(body[anchor])].begin;
@@ -73,8 +73,8 @@ struct AnchorInputs {
         return sum;
     }
 
-    /// Adds the force `force` at an anchor to the forces on nodes [N]. The nodal forces have the resultant and the
-    /// moment of `force`. Does nothing for an anchor on a collider or on the world.
+    /// Adds the force `force` at an anchor to the forces on nodes [N]. The nodal forces together have the same
+    /// resultant and moment as `force`. Does nothing for an anchor on a collider or on the world.
     void add_force(std::size_t anchor, const Vec3& force, std::span<Vec3> node_force) const {
         for_each_node(anchor, [&](std::size_t node, Real weight) { node_force[node] += weight * force; });
     }

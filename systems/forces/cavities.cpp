@@ -44,8 +44,9 @@ Real CavityInputs::volume_part(std::size_t c, std::size_t f) const {
         const auto origin = static_cast<std::size_t>(first + face[static_cast<std::size_t>(faces[c].begin)].front());
         return -(x.col(0) - position[origin]).dot(cross_of_edges(x)) / 6;
     }
-    // The swept volume is the time integral of the area vector times the mean corner velocity. With corners that move
-    // along straight lines at constant speed, the area vector is quadratic in time, so Simpson's rule is exact.
+    // The swept volume is the time integral of the area vector times the mean velocity of the corners. The corners are
+    // assumed to move along straight lines at constant velocity. The area vector is then quadratic in time, so
+    // Simpson's rule is exact.
     const Mat3& before = corners[f];
     const Vec3 area = (area_of(before) + 4 * area_of((before + x) / 2) + area_of(x)) / 6;
     return -area.dot((x - before).rowwise().mean());
@@ -71,7 +72,7 @@ Real CavityFilling::pressure() const {
     if (law == CavityLaw::pressure) return amount;
     if (!(volume > 0)) return std::numeric_limits<Real>::quiet_NaN();
     if (law == CavityLaw::gas) return fluid.ambient * (std::pow(amount / (fluid.density * volume), fluid.exponent) - 1);
-    // A liquid boils at zero absolute pressure, so its pressure relative to ambient is at least -ambient.
+    // The liquid is assumed to boil at zero absolute pressure, so its pressure above ambient is never below -ambient.
     return std::max(fluid.bulk_modulus * std::log(amount / volume), -fluid.ambient);
 }
 
@@ -186,8 +187,8 @@ bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const
 
 bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                  Real t, Real h, std::span<std::uint8_t> marked) {
-    // If the absolute pressures at the ends of a pipe differ by at most this share of their sum, the flow does not keep
-    // bodies awake.
+    // If the pressures at both ends of a pipe differ by at most this fraction of the sum of both absolute pressures,
+    // the flow keeps no bodies awake.
     constexpr Real still_share = 1e-9;
     bool any = false;
     const auto mark = [&](Index body) {

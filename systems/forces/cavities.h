@@ -1,4 +1,5 @@
-// Force element: pressure on the faces of cavities, which may contain a gas or a liquid (docs/methods/cavities.md).
+// Force element (part of a step that adds forces to nodes): pressure on the faces of cavities, which may contain a gas
+// or a liquid (docs/methods/cavities.md).
 #pragma once
 
 #include <array>
@@ -54,7 +55,7 @@ struct CavityInputs {
     Mat3 corners_now(std::size_t c, std::size_t f) const;
     /// Contribution of face `f` to the volume of cavity `c` [m^3]. In a closed cavity: signed volume of the tetrahedron
     /// that connects the face with the first corner of the cavity's first face. In an open cavity: volume that the face
-    /// has swept since the end of the last step.
+    /// has swept since it was at `corners`.
     Real volume_part(std::size_t c, std::size_t f) const;
     /// Present volume of cavity `c` [m^3].
     Real volume(std::size_t c) const;
@@ -83,7 +84,7 @@ struct CavityFilling {
 };
 
 /// Stiffness -dp/dV of a filling [Pa/m^3]; 0 for a prescribed pressure. For a boiling liquid, whose pressure is
-/// constant, returns an upper bound: the stiffness before boiling. `pressure`: above ambient [Pa].
+/// constant, the result is only an upper bound: the stiffness before boiling. `pressure`: above ambient [Pa].
 Real filling_stiffness(CavityLaw law, const CavityFluid& fluid, Real pressure, Real volume);
 /// Mass of a gas at a pressure above ambient [kg].
 Real mass_of_gas(const CavityFluid& fluid, Real pressure, Real volume);
@@ -104,7 +105,7 @@ struct CavityOutputs {
 
 /// Adds the forces of the pressure in all cavities to the applied forces of nodes. Each corner of a face receives a
 /// third of pressure times area, in the direction into the body. `now`: time of the positions [s]. A prescribed
-/// pressure is averaged from `now - lag` to `now - lag + kick`, the interval in which the forces act. The volume of a
+/// pressure is averaged over the time from `now - lag` to `now - lag + kick`, in which the forces act. The volume of a
 /// liquid at ambient pressure is its prescribed value at time `now`. Returns false if there is no cavity.
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
                        const CavityOutputs& out);
@@ -144,16 +145,17 @@ struct CavityMemory {
     }
 };
 
-/// After a step of length `h` that began at time `t`: stores the pressures at time `t`, adds the prescribed flow of gas
-/// to the masses in cavities, lets gas flow through the pipes in table order, and updates the volumes of open cavities.
-/// `volume_now`: column of CavityTable. A prescribed outflow ends when a cavity contains no more gas. Returns false if
-/// there is no cavity.
+/// Updates the cavities after a step of length `h` that began at time `t`. Stores the pressures at time `t`. Adds the
+/// prescribed flow of gas to the masses in cavities, and lets gas flow through the pipes in table order. Updates the
+/// volumes of open cavities. `volume_now`: column of CavityTable. A prescribed outflow ends when a cavity contains no
+/// more gas. Returns false if there is no cavity.
 bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                     std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out);
 
-/// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or whose mass of gas changes. Gas
-/// counts as flowing in a pipe if the absolute pressures at its ends differ by more than 1e-9 of their sum. `marked`:
-/// by row of BodyTable; if it is empty, only the return value is computed. Returns false if there is no such body.
+/// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or whose mass of gas changes: these
+/// bodies must not sleep. In a pipe, gas counts as flowing if the absolute pressures at both ends differ by more than
+/// 1e-9 of their sum. `marked`: by row of BodyTable; if it is empty, only the return value is computed. Returns false
+/// if there is no such body.
 bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                  Real t, Real h, std::span<std::uint8_t> marked);
 

@@ -6,8 +6,8 @@ namespace skerry {
 
 namespace {
 
-/// Solves J x = y for a positive semidefinite J. Components of x along eigenvectors whose eigenvalue is almost zero are
-/// set to zero.
+/// Solves J x = y for a positive semidefinite J. Components of x along eigenvectors of J with an eigenvalue of almost
+/// zero are set to zero.
 Vec3 solve_where_possible(const Mat3& J, const Vec3& y) {
     constexpr Real negligible = 1e-9;
     const SymmetricEigen parts = symmetric_eigen(J);

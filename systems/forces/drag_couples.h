@@ -1,4 +1,4 @@
-// Drag of the rotation of rigid bodies (docs/methods/loads.md).
+// Corrects the drag on the rotation of rigid bodies (docs/methods/loads.md).
 #pragma once
 
 #include <span>
@@ -33,10 +33,10 @@ struct DraggedBodies {
     }
 };
 
-/// Corrects the drag of rigid bodies that add_loads() has added to `applied_force`, by node [N]. Adds forces with the
-/// sum zero, so that the moment of the drag about the centre of mass becomes -drag L, with the angular momentum L of
-/// the body. Without this correction it is -drag times the angular momentum of point masses at the nodes. Some of these
-/// masses may be negative, and drag could then speed up rotation. If all nodes lie on a line, the couple about this
+/// Corrects the drag of rigid bodies that add_loads() has added to `applied_force`, by node [N]. Adds nodal forces that
+/// sum to zero. With them the moment of the drag about the centre of mass becomes -drag L, with the angular momentum L
+/// of the body. Without the correction the moment is -drag times the angular momentum of the node masses. Some node
+/// masses may be negative, so that drag could speed up the rotation. If all nodes lie on a line, the couple about this
 /// line is left out, because nodal forces cannot exert it. `fields`: from add_loads(). Returns false if there is no
 /// rigid or implicit body.
 bool add_drag_couples(const DraggedBodies& bodies, std::span<const BodyField> fields, std::span<Vec3> applied_force);

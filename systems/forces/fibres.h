@@ -1,5 +1,5 @@
-// Force element: fibres in tetrahedra, which resist stretch and contract with an active tension
-// (docs/methods/elasticity.md 2.7).
+// Force element (part of a step that adds forces to nodes): fibres in tetrahedra, which resist stretch and contract
+// with an active tension (docs/methods/elasticity.md 2.7).
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 namespace skerry {
 
 /// Law of a family of fibres (Holzapfel, Gasser, Ogden 2000): W = k_1/(2 k_2) (exp(k_2 E^2) - 1) with E = max(I_4 - 1,
-/// 0) and the squared stretch I_4 = |F a|^2 of fibres with the direction a in the rest shape. The active tension adds
-/// the nominal stress `tension` along the fibres.
+/// 0) and the squared stretch I_4 = |F a|^2. F is the deformation gradient, and a the direction of the fibres in the
+/// rest shape. The active tension adds the nominal stress `tension` along the fibres.
 struct FibreLaw {
     Real stiffness, exponent;  // k_1 [Pa], k_2
     // Below this stretch the active stress is reduced in proportion to the stretch. Otherwise the force would jump at a
@@ -28,9 +28,9 @@ struct FibreLaw {
 
     /// Energy per rest volume without the active part [J/m^3]. `square`: squared stretch.
     Real energy(Real square) const;
-    /// Stress vectors for the stretched direction y = F a.
+    /// Stress vectors if the direction a of the fibres is stretched to y = F a.
     FibrePull pull(const Vec3& y, Real tension) const;
-    /// Upper bound of the eigenvalues of the derivative of FibrePull::whole by y, for active tensions from 0 to
+    /// Upper bound of the eigenvalues of the derivative of FibrePull::whole by y, for all active tensions from 0 to
     /// `tension` [Pa].
     Real stiffness_bound(const Vec3& y, Real tension) const;
 };
@@ -89,13 +89,13 @@ struct FibreInputs {
 };
 
 /// Adds the forces of all fibres to `applied_force`, by node [N]. An active tension that changes over time acts with
-/// its mean over the force interval of the step. Stresses are computed in parallel and written to `next`, forces are
-/// summed sequentially. Returns false if there are no fibres; reports then count the stage as skipped.
+/// its mean over the force interval of the step. Stresses are computed in parallel and written to `next`; the nodal
+/// forces are summed sequentially. Returns false if there are no fibres; reports then count the stage as skipped.
 bool add_fibre_forces(Executor& executor, const FibreInputs& fibres, const ForceIntervals& intervals,
                       std::span<FibrePull> next, std::span<Vec3> applied_force);
 
-/// Marks the bodies of fibres whose active tension changes in the step of length `h` that starts at time `t`. Returns
-/// false if no tension changes. `marked`: by row of BodyTable; may be empty.
+/// Marks the bodies of fibres whose active tension changes in the step of length `h` that starts at time `t`: these
+/// bodies must not sleep. Returns false if no tension changes. `marked`: by row of BodyTable; may be empty.
 bool mark_activated(const FibreInputs& fibres, Real t, Real h, std::span<std::uint8_t> marked);
 
 struct FibreWorkInputs {
@@ -120,7 +120,7 @@ struct FibreWorkInputs {
 Real measure_fibres(const FibreInputs& fibres, const FibreWorkInputs& step, Real h, Real lag);
 
 /// Passive energy of all fibres at the present positions [J], plus a correction for velocities that are `lag` seconds
-/// older than positions, as in spring_energy.
+/// older than positions (see spring_energy).
 Real fibre_energy(const FibreInputs& fibres, const FibreWorkInputs& last, Real lag);
 
 /// Stores the passive stress of a committed step. Returns false if there are no fibres; reports then count the stage as

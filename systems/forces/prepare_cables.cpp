@@ -33,7 +33,7 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
         const Vec3 here = cables.anchor.at(at), next = p + 1 < points.end ? cables.anchor.at(at + 1) : here;
         const Real length = (next - here).norm();
         blocks.length.back() = length;
-        // Below this length the direction of a segment would be only rounding error, so it remains zero.
+        // Below this length the direction of a segment would consist of rounding errors only, so it remains zero.
         const Real shortest = 1e-14 * (here.norm() + next.norm());  // [m]
         if (length > shortest) blocks.direction.back() = (next - here) / length;
     }
@@ -50,8 +50,8 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
     return listed;
 }
 
-/// For a cable with a prescribed rate of length: greatest length at the end of a step [m]. `before`: greatest length at
-/// the start of the step [m].
+/// Greatest permitted length at the end of a step, for a cable with a prescribed rate of this length [m]. `before`:
+/// greatest permitted length at the start of the step [m].
 Real released_at_end(std::span<const TimeKey> keys, Real before, const CableTimes& times) {
     return std::max(Real(0), before + times.h * mean_value(keys, times.t, times.h));
 }
@@ -101,8 +101,8 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
 void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> body_rates) {
     const Real length = (cables.anchor.at(point + 1) - cables.anchor.at(point)).norm();
     if (!(length > 0) || tension == 0) return;
-    // A segment resists a displacement across its direction with the stiffness tension / length. With the weights w of
-    // the nodes of an anchor and their masses m, w^2 / m sums to the mobility of the anchor.
+    // A segment resists a displacement across its direction with the stiffness tension / length. The mobility of an
+    // anchor is the sum of w^2 / m over its nodes, with their weights w and masses m.
     Real mobility = 0;  // [1/kg]
     for (const std::size_t end : {point, point + 1})
         cables.anchor.for_each_node(
@@ -197,7 +197,7 @@ bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std
 
 CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> before, std::span<const Real> now) {
     CableWork sum;
-    Real drawn = 0;  // length of cable that moves past the start of the segment, towards the first point [m]
+    Real drawn = 0;  // length of cable that moves past the start of segment s, towards the first point [m]
     for (std::size_t s = tension.size(); s-- > 0;) {
         drawn -= now[s] - before[s];
         if (s == 0)

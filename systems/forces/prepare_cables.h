@@ -1,4 +1,5 @@
-// Geometry, control and friction of the cables in a step (docs/methods/cables.md).
+// Prepares the cables of a step: geometry, control and friction. Adds the forces that are known before the solve, and
+// stores the results (docs/methods/cables.md).
 #pragma once
 
 #include <span>
@@ -44,10 +45,10 @@ struct CableInputs {
     bool has_known_forces(std::size_t cable) const {
         return control[cable] == CableControl::tension && friction[cable] == 0;
     }
-    /// True if a point of the cable is on a collider that moves in this step.
+    /// True if at least one point of the cable is on a collider that moves in this step.
     bool is_led(std::size_t cable) const;
-    /// True if the control of the cable changes, or a collider moves one of its points, in the step of length `h` that
-    /// starts at time `t`.
+    /// True if the prescribed value of the cable changes, or a collider moves one of its points, in the step of length
+    /// `h` that starts at time `t`. A nonzero prescribed rate of length also counts.
     bool is_driven(std::size_t cable, Real t, Real h) const;
     /// True if no point of the cable moves in this step: all its bodies are asleep, and no collider moves a point.
     /// Always false if no body of the world is asleep.
@@ -59,7 +60,7 @@ struct CableInputs {
 /// Start `t`, length `h` and force interval `kick` of a step [s], and the recovery speed of the cables.
 struct CableTimes {
     Real t = 0, h = 0, kick = 0;
-    Real recovery_speed = 0;  // greatest speed at which the excess over a prescribed length is drawn in [m/s]
+    Real recovery_speed = 0;  // upper limit of the speed at which a too long cable is shortened [m/s]
 
     static CableTimes bind(const Binder& binder, const Real& t, const Real& h, const Real& kick,
                            const Real& recovery_speed) {
@@ -75,21 +76,22 @@ bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlo
 bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> applied_force);
 
 /// Adds to `body_rates`, by row of BodyTable, an upper bound of the squared circular frequencies that cables cause in
-/// the body [1/s^2]. A prescribed tension counts with its greatest value, any other tension with its value in the last
-/// step.
+/// the body [1/s^2]. The stable step depends on it. A prescribed tension counts with its greatest value, any other
+/// tension with its value in the last step.
 void add_cable_rates(const CableInputs& cables, std::span<Real> body_rates);
 
-/// Marks the bodies of driven cables (CableInputs::is_driven). Returns false if no cable is driven. `marked`: by row of
-/// BodyTable.
+/// Marks the bodies of driven cables (CableInputs::is_driven), which must not sleep. Returns false if no cable is
+/// driven. `marked`: by row of BodyTable.
 bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Work and loss of a cable during a motion.
 struct CableWork {
-    Real work = 0;        // work of the control on the cable [J]
+    Real work = 0;        // work that the prescribed tension or length does on the cable [J]
     Real dissipated = 0;  // energy that friction at the points dissipates [J]
 };
-/// Work while the segments change their lengths from `before` to `now` [m]. `tension`: by segment [N]. If it holds
-/// impulses of tensions [N s] instead, the results are work times the duration of the impulses.
+/// Returns the work and loss of a cable whose segments change their lengths from `before` to `now` [m]. `tension`: by
+/// segment [N]. It may contain impulses of tensions [N s] instead; the results are then energies times the duration of
+/// the impulses [J s].
 CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> before, std::span<const Real> now);
 
 /// Columns of CableTable that a committed step stores for the next step.
@@ -113,13 +115,13 @@ struct CableMemory {
     }
 };
 
-/// Stores the tensions and lengths of the cables that act. Adds the work of these cables in the previous step, because
-/// the lengths at its end are known only now. Advances the greatest length of all cables with a prescribed rate.
-/// Returns false if there is no cable.
+/// Stores the tensions and lengths of the cables that act. Also adds the work of these cables in the previous step,
+/// because the lengths at the end of that step are known only now. Advances the greatest permitted length of all cables
+/// with a prescribed rate. Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
-/// Totals over the cables that the region solver has solved in a step. Cables of ghosts do not count, because the
-/// owning rank counts them.
+/// Totals over the cables that the region solver has solved in a step. Cables on ghosts do not count, because the rank
+/// that owns the body counts them.
 struct CableMeasures {
     Vec3 impulse = Vec3::Zero();  // impulse that cables transmit from colliders and from held nodes [N s]
     Real work = 0;                // work of the cables on the bodies [J]

@@ -44,8 +44,8 @@ struct Stretch {
     }
 };
 
-/// Inverse mass of an anchor along a direction [1/kg], if each node or body divides its mass equally among the dampers
-/// that act on it. With this division, several dampers on one body are stable at any step length.
+/// Inverse mass of an anchor along the direction `along` [1/kg]. The mass of each node or body is divided equally among
+/// the dampers that act on it. With this division, several dampers on one body are stable at any step length.
 Real divided_inverse_mass(const SpringMasses& masses, const AnchorMass& own, const Mat3& response, Index body,
                           const Vec3& at, const Vec3& along) {
     if (own.dampers == 0) return own.divided;
@@ -73,8 +73,8 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
                                                        springs.first.body[s], springs.first.at(s), stretch.along) +
                                   divided_inverse_mass(masses, masses.second[s], masses.second_response[s],
                                                        springs.second.body[s], springs.second.at(s), stretch.along);
-        // Mean damper force over the time `kick` if nothing else acts: the rate then decays exponentially, by the
-        // factor exp(-decay) in total.
+        // Mean damper force over the time `kick` for which forces act, if no other force acts: `rate`, the rate of
+        // change of the length, then decays exponentially, by the factor exp(-decay) in total.
         const Real decay = kick * law.damping * inverse_mass;
         damper = law.damping * rate * (decay > 0 ? -std::expm1(-decay) / decay : Real(1));
     }

@@ -1,4 +1,5 @@
-// Force element: springs and dampers between anchors (docs/methods/springs.md).
+// Force element (part of a step that adds forces to nodes): springs and dampers between anchors
+// (docs/methods/springs.md).
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,8 @@ struct SpringLaw {
     Real tension(Real extension) const;
     /// Elastic energy, whose derivative is the elastic tension [J].
     Real energy(Real extension) const;
-    /// Tension of spring and damper together [N]. It is limited to `strength`, and has one sign if the spring is
-    /// one-sided. `elastic`: elastic tension [N]; `damper`: force of the damper alone [N].
+    /// Tension of spring and damper together [N]. Its magnitude is at most `strength`. If the spring is one-sided, it
+    /// only pulls or only pushes. `elastic`: elastic tension [N]; `damper`: force of the damper alone [N].
     Real with_damper(Real extension, Real elastic, Real damper) const;
 };
 
@@ -59,7 +60,7 @@ struct SpringInputs {
     }
 
     std::size_t size() const { return side.size(); }
-    /// True if another rank counts the work and energy of the spring.
+    /// True if a body of the spring is a ghost: another rank then counts the work and energy of the spring.
     bool is_ghost(std::size_t s) const { return ghosts.contain(first.body[s]) || ghosts.contain(second.body[s]); }
     SpringLaw law(std::size_t s) const { return {side[s], stiffness[s], damping[s], strength[s]}; }
     Real rest(std::size_t s, Real t) const { return value_at(rows_of(key, rest_length[s]), t); }
@@ -108,14 +109,14 @@ struct SpringMasses {
 bool add_spring_forces(Executor& executor, const SpringInputs& springs, const SpringMasses& masses, Real t, Real h,
                        Real kick, std::span<SpringForce> next, std::span<Vec3> applied_force);
 
-/// Marks the bodies of driven springs (SpringInputs::is_driven). Returns false if no spring is driven. `marked`: by row
-/// of BodyTable.
+/// Marks the bodies of driven springs (SpringInputs::is_driven), which must not sleep. Returns false if no spring is
+/// driven. `marked`: by row of BodyTable.
 bool mark_driven_bodies(const SpringInputs& springs, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Energies of all springs in a step.
 struct SpringWork {
-    // Work on the anchors, minus the work done on the springs by changing their rest lengths [J]. If there are no
-    // dampers, this difference equals the decrease of the elastic energy.
+    // Work of the springs on the anchors, minus the work that changes of the rest lengths do on the springs [J].
+    // Without dampers this difference equals the decrease of the elastic energy.
     Real work = 0;
     Real dissipated = 0;  // energy dissipated by dampers [J]
 };
@@ -146,8 +147,8 @@ struct SpringWorkInputs {
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
 /// Elastic energy of all springs at the present positions [J], plus a correction for velocities that are `lag` seconds
-/// older than positions. The correction is `lag` times the power of dF, where dF is the present elastic force minus the
-/// force of the last step. `t`: present time [s].
+/// older than positions. The correction is `lag` times the power of dF, the present elastic force minus the force of
+/// the last step. `t`: present time [s].
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag);
 
 struct SpringMemory {

@@ -20,8 +20,8 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T segment_distance_squared(const LaneVec3<T>& a0, const LaneVec3<T>& a1,
                                                          const LaneVec3<T>& b0, const LaneVec3<T>& b1) {
-    // Limit of the squared sine of the angle between the two lines. Below it, rounding errors would determine where the
-    // lines come nearest, so the search starts at s = 0.
+    // Lower limit of the squared sine of the angle between the two lines. Below it, rounding errors would determine
+    // where the lines come nearest, so the search starts at s = 0 instead.
     constexpr Real noise_sine_squared = 1e-14;
     const T zero{}, one = zero + 1.0;
     const LaneVec3<T> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
@@ -64,7 +64,8 @@ template <class T>
 [[gnu::always_inline]] inline PointTriangleLanes<T> point_triangle_distance(const LaneVec3<T>& p, const LaneVec3<T>& a,
                                                                             const LaneVec3<T>& b,
                                                                             const LaneVec3<T>& c) {
-    // Square of the smallest height of a triangle, relative to the square of its longest edge.
+    // Lower limit of the squared ratio of smallest height to longest edge. Below it, only the edges of a triangle are
+    // used.
     constexpr Real min_height_squared = 1e-12;
     const T zero{};
     const LaneVec3<T> ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;
@@ -81,7 +82,7 @@ template <class T>
                        (dot(cross(normal, ca), cp) > zero) &
                        (area_squared > min_height_squared * longest_squared * longest_squared);
     const T to_plane = height * height / area_squared;
-    // The comparisons above ignore NaN. The last term makes the result NaN if a coordinate is NaN, and is 0 otherwise.
+    // The comparisons above ignore NaN. Therefore a term is added that is NaN if a coordinate is NaN, and 0 otherwise.
     return {(above ? to_plane : to_edges) + 0.0 * (ab2 + bc2 + ca2), height};
 }
 

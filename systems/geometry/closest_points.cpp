@@ -8,12 +8,12 @@ namespace skerry {
 
 namespace {
 
-// A triangle whose smallest height is below this fraction of its longest edge is treated as the edge alone. At a
-// fraction of 1e-8, the sub-areas computed below would lose all digits.
+// A triangle whose smallest height is below this fraction of its longest edge is treated as the edge alone. With a
+// limit of 1e-8 instead, the sub-areas computed below could lose all digits.
 constexpr Real min_height_fraction = 1e-6;
 
 // Segments count as parallel if the squared sine of the angle between them is below this value, because small changes
-// then move the nearest points far.
+// of their directions then move the nearest points far.
 constexpr Real min_sine_squared = 1e-6;
 
 // If the squared sine of the angle between two segments is below this value, the denominator in the formula for their
@@ -28,7 +28,7 @@ PointTriangle at(const Vec3& p, const Vec3& nearest, TriangleRegion region, Real
     return {{w0, w1, w2}, region, nearest, (p - nearest).squaredNorm()};
 }
 
-/// Nearest point on the longest edge of a degenerate triangle. This edge replaces the triangle.
+/// Nearest point of a degenerate triangle, which is treated as its longest edge.
 PointTriangle closest_point_on_flat_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
     constexpr std::array<TriangleRegion, 3> edge_region{TriangleRegion::edge01, TriangleRegion::edge12,
                                                         TriangleRegion::edge20};
@@ -86,8 +86,8 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
         return at(p, b + s * (c - b), TriangleRegion::edge12, 0, 1 - s, s);
     }
     const Real scale = 1 / (va + vb + vc);
-    // Near an edge, rounding errors can make a weight negative. Such weights are set to zero, because in the stencil of
-    // a contact the sign of a weight tells to which of the two bodies a node belongs.
+    // Near an edge, rounding errors can make a weight negative. Such a weight is set to zero, because the sign of a
+    // weight in the stencil of a contact tells to which of the two bodies the node belongs.
     const Real v = std::max(Real(0), vb * scale), w = std::max(Real(0), vc * scale);
     return at(p, a + v * ab + w * ac, TriangleRegion::face, std::max(Real(0), 1 - v - w), v, w);
 }

@@ -39,8 +39,9 @@ typedef std::int64_t HalfBits __attribute__((vector_size(sizeof(Real4))));
 #endif
 }
 
-/// Bits of a comparison of all lanes of a block. compare(part) returns the mask of the lanes in one register. The
-/// compiler would compare vectors that are wider than a register lane by lane, so a block is compared by registers.
+/// Bit mask of a comparison of eight lanes, which fill kernel_parts registers. compare(part) returns the mask of the
+/// lanes in register `part`. The lanes are compared register by register, because the compiler would compare a vector
+/// that is wider than a register lane by lane.
 template <class Compare>
 [[gnu::always_inline]] inline unsigned bits_of_parts(Compare&& compare) {
     unsigned bits = 0;

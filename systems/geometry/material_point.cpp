@@ -35,8 +35,8 @@ MaterialPoint point_of_solid(std::span<const Vec3> nodes, const Vec3& position) 
 
 std::optional<MaterialPoint> point_inside(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& position) {
-    // Tolerance for rounding errors of barycentric coordinates. With it, a point on a common face of two tetrahedra
-    // always belongs to the one that comes first.
+    // Tolerance for rounding errors of barycentric coordinates. With it, a point on the common face of two tetrahedra
+    // always belongs to the tetrahedron that comes first.
     constexpr Real rounding = 1e-9;
     for (const std::array<Index, 4>& corners : tetrahedra) {
         const MaterialPoint point = point_of_tetrahedron(nodes, corners, position);

@@ -15,14 +15,14 @@ struct MaterialPoint {
     std::array<Real, 4> weight{};
 };
 
-/// Returns the material point of a tetrahedron that is at `position` [m], inside or outside the
-/// tetrahedron. `nodes`: node positions [m].
+/// Returns the material point of a tetrahedron that is at `position` [m], inside or outside the tetrahedron. `nodes`:
+/// node positions [m].
 MaterialPoint point_of_tetrahedron(std::span<const Vec3> nodes, const std::array<Index, 4>& corners,
                                    const Vec3& position);
 
-/// Returns the material point of a rigid body that is at `position` [m], inside or outside the body. As
-/// corners it takes four nodes far from each other, so that rounding errors of the weights stay small. The nodes of the
-/// body must not all lie in one plane.
+/// Returns the material point of a rigid body that is at `position` [m], inside or outside the body. The corners of its
+/// tetrahedron are four nodes of the body far from each other, so that rounding errors of the weights stay small. The
+/// nodes of the body must not all lie in one plane.
 MaterialPoint point_of_solid(std::span<const Vec3> nodes, const Vec3& position);
 
 /// Returns the point of the first tetrahedron that contains `position`, or nothing if no tetrahedron contains it.

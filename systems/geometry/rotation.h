@@ -22,14 +22,14 @@ inline Vec3 rotation_vector(const Mat3& rotation) {
     return turn.axis() * turn.angle();
 }
 
-/// Returns the rotation vector nearest to `to` that describes the rotation of `rotation`. Rotation vectors of one
-/// rotation differ by full revolutions about its axis.
+/// Returns the rotation vector nearest to `to` among those that describe the same rotation as `rotation`. These vectors
+/// differ by full revolutions about the axis of the rotation.
 inline Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
     constexpr Real turn = 2 * std::numbers::pi;
     const Real angle = rotation.norm();
     if (angle == 0) {
-        // The identity is described by the zero vector, and by full revolutions about any axis. The revolutions nearest
-        // to `to` have its axis.
+        // The identity is described by the zero vector, and by full revolutions about any axis. The nearest of these
+        // vectors to `to` has the direction of `to`.
         const Real length = to.norm();
         return length > 0 ? Vec3(turn * std::round(length / turn) / length * to) : rotation;
     }

@@ -17,9 +17,9 @@ Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
     return nearest.on_first - nearest.on_second;
 }
 
-/// Fraction of `displacement`, counted from the points `x`, up to which a slab of thickness `threshold` perpendicular
-/// to `normal` separates the two features. Up to this fraction the distance between the features is at least
-/// `threshold`, for any unit vector `normal`.
+/// Fraction of `displacement` up to which a slab of thickness `threshold` perpendicular to the unit vector `normal`
+/// separates the two features, if their points start at `x`. Up to this fraction the distance between the features is
+/// at least `threshold`, for any `normal`.
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
                   Real threshold) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Kinds of feature pairs with four points: a point and the three corners of a triangle, or the two ends of each of two
-/// edges.
+/// Kinds of feature pairs. Each has four points: a point and the three corners of a triangle, or the two ends of each
+/// of two edges.
 enum class FeaturePair : std::uint8_t { point_triangle, edge_edge };
 
 using FourPoints = std::array<Vec3, 4>;  // [m]
@@ -33,13 +33,14 @@ struct ContactThreshold {
 /// Time in [0, 1] at which two features are nearly in contact; no value if they stay apart. The points of the features
 /// move in straight lines from `position` by `displacement`.
 ///
-/// The gap is the distance between the features minus kept.distance. At the returned time the gap is at most
-/// `contact_slack` times the gap at the start and at most kept.near, but the features have not met yet. The time is 0
-/// if the features touch at the start.
+/// The gap is the distance between the features minus threshold.distance. At the returned time the gap is at most
+/// `contact_slack` times the gap at the start and at most threshold.near, but the features have not met yet. The time
+/// is 0 if the features touch at the start.
 ///
 /// The method is additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5). In
-/// addition, an iteration advances as long as a slab separates the features, so that features that slide past each
-/// other need few iterations. After some thousand iterations the search gives up and returns the time reached.
+/// addition, an iteration advances as long as a slab (the space between two parallel planes) separates the features.
+/// Features that slide past each other thus need few iterations. After some thousand iterations the search gives up and
+/// returns the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const ContactThreshold& threshold = {});
 

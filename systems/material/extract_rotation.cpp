@@ -10,7 +10,7 @@ namespace {
 using Vector4 = std::array<Real, 4>;
 
 /// Eigenvalues and eigenvectors of a symmetric 4x4 matrix. eigen_of() computes them by cyclic Jacobi rotations (Golub,
-/// Van Loan, 8.5), in plain loops: the vectorised code of a library would give other bits on other processors.
+/// Van Loan, 8.5). It uses plain loops: the vectorised code of a library would give other bits on other processors.
 struct Eigen4 {
     Vector4 value;
     std::array<Vector4, 4> vector;  // vector[i] is the eigenvector of value[i]

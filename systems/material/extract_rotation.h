@@ -1,5 +1,5 @@
 // Extraction of the rotation nearest to a deformation gradient, by Newton's method. The iteration starts from the
-// rotation of the last step (the idea of Mueller 2016).
+// rotation in the last step (idea: Mueller 2016).
 #pragma once
 
 #include "components/element_table.h"
@@ -25,11 +25,11 @@ template <class T>
 
 /// One Newton step towards the rotation R that maximises tr(R^T F). It changes R by the rotation vector G^-1 a, with S
 /// = sym(R^T F), G = tr(S) I - S and the axial vector a of R^T F. The error after the step is the cube of the error
-/// before. (Mueller's step a / tr(S) leaves a third of the error.)
+/// before. (The step a / tr(S) of Mueller 2016 leaves a third of the error.)
 ///
-/// Returns for each lane whether no further pass is needed: the step started safely inside the basin of the maximum,
-/// and its angle was less than 2e-5 rad. `trace`: tr(R^T F) for the new R, correct to fourth order in the rotation
-/// angle.
+/// Returns for each lane whether no further pass (Newton step) is needed. Then R was so close to the maximum before the
+/// step that the method converges, and the angle of the step was less than 2e-5 rad. `trace`: tr(R^T F) for the new R,
+/// correct to fourth order in the rotation angle.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
     // Newton's method ends after a step whose squared rotation angle is below this value [rad^2]. The angle is then
@@ -57,9 +57,9 @@ template <class T>
     // A Newton step changes the value of a quadratic function by half of the slope times the step. Here the slope is
     // `axial` and the step is the rotation vector 2 o.
     trace = before + dot(o, axial);
-    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. The length |q| sqrt(1 + |o|^2)
-    // of the product is known before the product, so that root and division do not delay the result. The factor 1.5 -
-    // |q|^2 / 2 corrects the length of q, which rounding has changed.
+    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. The length of the product,
+    // |q| sqrt(1 + |o|^2), is known before the product. So root and division do not delay the result. The factor
+    // 1.5 - |q|^2 / 2 corrects the length of q, which rounding has changed.
     const T o_squared = dot(o, o);
     const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
     const LaneQuaternion<T> p = q;
@@ -73,8 +73,8 @@ template <class T>
 /// F), the one nearest to `start` is taken. Returns `start` if F is not finite.
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
 
-/// Replaces `start` by nearest_rotation() in all lanes in use (volume not 0). It is slow, but rarely needed, and
-/// therefore not inlined.
+/// Replaces `start` by nearest_rotation() in all lanes in use (volume not 0). The function is slow, but rarely needed,
+/// and therefore not inlined.
 template <class T>
 void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& start);
 extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);

@@ -23,12 +23,12 @@ struct Guard {
     /// First Piola-Kirchhoff stress while J = det F is below J0: -k (J0 - J) cof F [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Upper bound of the largest eigenvalue of dP/dF while J = det F is below J0: k |cof F|^2 + 2/sqrt(3) k (J0 - J)
-    /// |F| (docs/methods/stable_step.md 4.3) [Pa].
+    /// Upper bound of the largest eigenvalue of dP/dF while J = det F is below J0 [Pa], else 0:
+    ///     k |cof F|^2 + 2/sqrt(3) k (J0 - J) |F|     (docs/methods/stable_step.md 4.3)
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa], with p = -k (J0 - J), J = det F < J0, the stretches s of F and the stretches
-    /// c of cof F (m: axis other than i and j):
+    /// dP/dF in the form of Tangent while J = det F is below J0 [Pa]. Symbols: p = -k (J0 - J), the stretches s of F,
+    /// the stretches c of cof F, and the axis m other than i and j:
     ///     normal_ii = k c_i^2
     ///     normal_ij = k c_i c_j + p s_m
     ///     flip_m    = -p s_m
@@ -58,8 +58,8 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone. It uses the inequalities |cof F|^2 <=
-    /// |F|^4/3 and 2/sqrt(3) |F| <= |F|^2/3 + 1.
+    /// Upper bound of stiffness_bound, computed from `square` = |F|^2 and `J` = det F alone. It uses the inequalities
+    /// |cof F|^2 <= |F|^4/3 and 2/sqrt(3) |F| <= |F|^2/3 + 1.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const T missing = missing_of(J);

@@ -37,8 +37,8 @@ bool all(const Mask& mask) {
     return both != 0;
 }
 
-/// A 3x3 matrix of T, stored by columns. Functions that the force kernel uses are forced inline. gcc does not inline
-/// them by itself, and then the nine entries would go through memory.
+/// A 3x3 matrix of T, stored by columns. Functions that the force kernel uses are forced inline. By itself gcc does not
+/// inline them, and would pass the nine entries through memory.
 template <class T>
 struct LaneMat3 {
     LaneVec3<T> c0, c1, c2;
@@ -78,9 +78,9 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress as the sum of_F F + of_other other, with the deformation gradient F [Pa]. In this form a caller can scale
-/// the stress or add multiples of F by changing two numbers per lane. Laws whose stress has another form return a
-/// matrix.
+/// A stress as the sum of_F F + of_other other, with the deformation gradient F and a matrix `other` [Pa]. In this form
+/// a caller can scale the stress or add multiples of F by changing two numbers per lane. Laws whose stress has another
+/// form return a matrix.
 template <class T>
 struct SplitStress {
     T of_F, of_other;

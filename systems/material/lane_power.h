@@ -1,5 +1,6 @@
-// Powers of positive numbers, lane by lane, from the four basic operations only, which IEEE 754 rounds correctly. So a
-// lane gets the same bits for every number of lanes, and on every machine.
+// Logarithm and exponential function for powers of positive numbers, lane by lane. They use only the four basic
+// operations, which IEEE 754 rounds correctly. So results have equal bits for every number of lanes and on every
+// machine.
 #pragma once
 
 #include <bit>

@@ -8,19 +8,20 @@
 namespace skerry {
 
 /// Energy density [J/m^3], first Piola-Kirchhoff stress [Pa], and upper bound of the largest eigenvalue of dP/dF [Pa]
-/// of a material at the deformation gradient F. These functions treat one element at a time. Tests compare the kernels
-/// with them, and implicit bodies of large strain use them.
+/// of a material at the deformation gradient F. These functions treat one element at a time. They are the reference
+/// with which tests compare the kernels, and implicit bodies of large strain use them.
 Real energy_density(const MaterialConstants& material, const Mat3& F);
 Mat3 stress(const MaterialConstants& material, const Mat3& F);
 Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 /// Derivative dP/dF of the stress by the deformation gradient, for Newton steps [Pa].
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-/// Energy density [J/m^3] at small strain, for the displacement gradient `change`. Anisotropic laws compute it by their
-/// member energy_of_strain. All other laws agree with Linear at small strain.
+/// Energy density at small strain for the displacement gradient `change` [J/m^3]. Anisotropic laws compute it by their
+/// member energy_of_strain. All other laws agree with the law Linear at small strain.
 Real small_strain_energy(const MaterialConstants& material, const Mat3& change);
-/// Block -df_k/dx_l of the stiffness matrix at small strain, per volume [Pa/m^2]. The two nodes of the block have the
-/// shape function gradients `g` (node k) and `other` (node l) [1/m]. Anisotropic laws use their member `dyads`.
+/// Block -df_k/dx_l of the stiffness matrix at small strain, per volume, with the force f_k on node k and the position
+/// x_l of node l [Pa/m^2]. `g` and `other` are the shape function gradients of nodes k and l [1/m]. Anisotropic laws
+/// use their member `dyads`.
 Mat3 small_strain_stiffness(const MaterialConstants& material, const Vec3& g, const Vec3& other);
 
 /// Converts user parameters to material constants: Young's modulus > 0 [Pa], -1 < Poisson ratio < 0.5, density > 0

@@ -1,7 +1,7 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
 // are computed and stored in single precision. Their rounding errors, 6e-8 of the strains, are negligible in the
 // stress. Loops over components are unrolled, so that the components stay in registers. The outer loop runs over
-// components, the inner one over springs, and both accumulate the sums, so that few registers are needed.
+// components, the inner one over springs. Sums are accumulated within these loops, so that few registers are needed.
 #pragma once
 
 #ifdef __AVX512VL__
@@ -19,7 +19,8 @@
 
 namespace skerry {
 
-/// Number of strain components in one vector of type KernelFloat: two with 512-bit registers, else one.
+/// Number of strain components in one vector of type KernelFloat: two with 512-bit registers, else one. Each component
+/// takes eight lanes, one for each element of a block.
 #ifdef __AVX512VL__
 inline constexpr std::size_t components_together = 2;
 #else
@@ -35,8 +36,8 @@ struct SixFloats {
     KernelFloat of[count];
 };
 
-// The functions below sum in an order that does not depend on the register width. Halves of 512-bit registers are moved
-// with intrinsics, because gcc shuffles the whole register for __builtin_shufflevector.
+// The functions below sum in an order that does not depend on the register width, so results are bitwise equal. Halves
+// of 512-bit registers are moved with intrinsics, because gcc shuffles the whole register for __builtin_shufflevector.
 #ifdef __AVX512VL__
 [[gnu::always_inline]] inline KernelFloat together(const Float8& a, const Float8& b) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1);
@@ -121,10 +122,10 @@ struct InnerProduct {
             part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
 }
 
-/// Constants of a step that are equal in all elements of a body. Each fills a register, so that arithmetic instructions
-/// can take it directly from memory as an operand. Moduli are divided by `modulus`.
+/// Constants of a step that are equal in all elements of a body. Each is repeated in all lanes of a register, so that
+/// arithmetic instructions can take it directly from memory as an operand. Moduli are divided by `modulus`.
 struct MaxwellStep {
-    // fraction 1 / (1 + h r) of the spring strain that remains after a step h at the rate r
+    // fraction 1 / (1 + h r) of the spring strain that remains after a step of length h, with the relaxation rate r
     std::array<KernelFloat, maxwell_count> kept;
     // h r: strain change of the dashpot in the step, divided by the remaining spring strain
     std::array<Float8, maxwell_count> relaxes;
@@ -150,13 +151,13 @@ struct MaxwellStep {
 };
 
 /// Relaxes the springs of a block by backward Euler. `strain`: twice Green's strain in this step. `relaxes_volume`:
-/// step length times the rate of the bulk viscosity. `last`: springs in the last step; `next` receives those of this
-/// step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus. Springs of the block that
-/// comes `ahead` blocks later are prefetched.
+/// step length times the relaxation rate of the bulk viscosity. `last`: strains of the springs in the last step; `next`
+/// receives those of this step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus.
+/// Spring strains of the block that comes `ahead` blocks later are prefetched.
 ///
-/// The dashpots dissipate, per volume, the mean of the spring stresses in the last and this step, times the strain
-/// change of the dashpots. `dissipated` receives this energy density since the last step, divided by a quarter of
-/// step.modulus.
+/// The dashpots dissipate energy. Per volume, it is the mean of the spring stresses in the last and this step, times
+/// the strain change of the dashpots. `dissipated` receives this energy density for the time since the last step,
+/// divided by a quarter of step.modulus.
 [[gnu::always_inline]] inline LaneSymmetric<Float8> relax(const MaxwellStep& step, const LaneSymmetric<Float8>& strain,
                                                           const Float8& relaxes_volume, const SpringStrain& last,
                                                           SpringStrain& next, std::size_t ahead, Float8& dissipated) {

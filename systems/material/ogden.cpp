@@ -8,8 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// A positive number y(x): x above a limit, limit^2 / (2 limit - x) below it. `value`: y. `slope`: y'/y. `curvature`:
-/// the derivative of y'/y by x.
+/// A positive number y(x): x above a limit, limit^2 / (2 limit - x) below it. `value`: y. `slope`: y'/y with the
+/// derivative y' by x. `curvature`: the derivative of y'/y by x.
 template <class T>
 struct Limited {
     T value, slope, curvature;
@@ -51,9 +51,9 @@ struct PrincipalShape {
           log_stretch{log_of(stretch[0].value), log_of(stretch[1].value), log_of(stretch[2].value)},
           log_volume(log_of(volume.value)) {}
 
-    /// Powers (s_i / J^(1/3))^a for each axis, and the powers divided by the exponent a. For a = 0, `power` is 1 and
-    /// `over_exponent` is the logarithm, the limit of (power - 1)/a. For other a, -1/a is left out, because a constant
-    /// cancels in the derivatives of the law.
+    /// For each axis: `power` is (s_i / J^(1/3))^a with the stretch s_i and the exponent a. `over_exponent` is
+    /// power / a. For a = 0, `power` is 1 and `over_exponent` is the logarithm, the limit of (power - 1)/a. For other
+    /// a, -1/a is left out, because a constant cancels in the derivatives of the law.
     struct Powers {
         Three<T> power, over_exponent;
     };
@@ -94,8 +94,8 @@ Three<T> principal_stress(const MaterialConstants& material, const PrincipalShap
     return W;
 }
 
-/// Derivative dP/dF due to the energy of shape changes, in principal axes as in Tangent [Pa]. `diagonal` and `off`:
-/// entries of Tangent::normal; off[k] is the entry (i, j) of the two axes other than k.
+/// Derivative dP/dF due to the energy of shape changes, in principal axes as in Tangent [Pa]. `diagonal`: diagonal
+/// entries of Tangent::normal. `off`: its other entries; off[k] is the entry (i, j) of the two axes other than k.
 template <class T>
 struct PrincipalTangent {
     Three<T> diagonal{}, off{}, flip{}, twist{};
@@ -147,8 +147,8 @@ T smaller(const T& a, const T& b) {
     return a < b ? a : b;
 }
 
-/// Upper bound of the largest eigenvalue of a symmetric 3x3 matrix: the smaller of two bounds. One follows from the
-/// mean and the variance of the eigenvalues, and is exact if the two smaller eigenvalues are equal. The other is
+/// Upper bound of the largest eigenvalue of a symmetric 3x3 matrix: the smaller of two bounds. The first follows from
+/// the mean and the variance of the eigenvalues. It is exact if the two smaller eigenvalues are equal. The second is
 /// Gershgorin's.
 template <class T>
 T largest_eigenvalue(const Three<T>& diagonal, const Three<T>& off) {
@@ -246,8 +246,8 @@ Ogden::FrameBound<T> Ogden::frame_bound(const MaterialConstants& material, const
 template <class T>
 T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
     // The stretches x of F / J^(1/3) have the product 1. So the sum S of their squares satisfies (x - 1)^2 <= S - 3 for
-    // every x, and 3 (x - 1)^2 <= S - 3 for x < 1. Also x >= 2/S, because the product of the two other stretches is at
-    // most S/2.
+    // every stretch x, and 3 (x - 1)^2 <= S - 3 for every x < 1. Also x >= 2/S, because the product of the two other
+    // stretches is at most S/2.
     const auto regular = J >= least_volume;
     const T volume = regular ? J : T{} + 1.0, log_third = log_of(volume) * (1.0 / 3), cube_root = exp_of(log_third);
     const T S = square / (cube_root * cube_root), excess = larger(S - 3.0, T{});

@@ -1,8 +1,8 @@
-// Law of Ogden (1972) for rubber, with the volume change split off. Psi = sum_p 2 mu c_p / a_p^2 (sum_i (s_i /
-// J^(1/3))^a_p - 3) + K/2 (J - 1)^2 with the stretches s_i, J = det F, exponents a_p and shares c_p of the shear
-// modulus, whose sum is 1. One term of exponent 2 is the neo-Hookean law. Exponents 2 and -2 are the law of Mooney and
-// Rivlin (docs/methods/elasticity.md 2.5). The limit of one term of exponent 0 is the law of Hencky, whose energy of
-// shape changes is mu sum_i log^2 (s_i / J^(1/3)).
+// Law of Ogden (1972) for rubber, with separate terms for changes of shape and of volume. The energy density is Psi =
+// sum_p 2 mu c_p / a_p^2 (sum_i (s_i / J^(1/3))^a_p - 3) + K/2 (J - 1)^2 with the stretches s_i, J = det F, exponents
+// a_p and shares c_p of the shear modulus, whose sum is 1. One term of exponent 2 is the neo-Hookean law. Exponents 2
+// and -2 are the law of Mooney and Rivlin (docs/methods/elasticity.md 2.5). The limit of one term of exponent 0 is the
+// law of Hencky, whose energy of shape changes is mu sum_i log^2 (s_i / J^(1/3)).
 #pragma once
 
 #include "components/material_table.h"
@@ -19,8 +19,9 @@ struct Ogden {
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 900;  // for three terms
 
-    // The law is singular at zero stretch. Below these limits, a stretch x acts as the positive number limit^2 / (2
-    // limit - x), and J likewise. So energy and stress are finite for every F, and the stress is continuous.
+    // The law is singular at zero stretch. A stretch x below the limit least_stretch acts as the positive number
+    // limit^2 / (2 limit - x). J below the limit least_volume is replaced in the same way. So energy and stress are
+    // finite for every F, and the stress is continuous.
     static constexpr Real least_stretch = 0.05, least_volume = 0.2;
 
     /// Bulk modulus K = lambda + 2/3 mu at small strain [Pa].
@@ -40,14 +41,14 @@ struct Ogden {
     /// Upper bound of the largest eigenvalue of dP/dF, from its entries in principal axes [Pa].
     template <class T>
     static T stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F);
-    /// Upper bound of stiffness_bound, from |F|^2 and det F alone (docs/methods/stable_step.md 4.5) [Pa]. It is
-    /// infinite if J is below least_volume or a stretch may be below least_stretch.
+    /// Upper bound of stiffness_bound, from `square` = |F|^2 and `J` = det F alone (docs/methods/stable_step.md 4.5)
+    /// [Pa]. It is infinite if J is below least_volume or a stretch may be below least_stretch.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J);
 
-    /// Upper bound of dP/dF due to the energy of shape changes, as a quadratic form in a change X of F [Pa]: even
-    /// |X_e|^2 + odd |X_o|^2 - volume (R : X)^2. R is the rotation nearest to F. X_e and X_o are the parts of X with
-    /// X_e = R X_e^T R and X_o = -R X_o^T R.
+    /// Upper bound of that part of dP/dF which is due to the energy of shape changes, as a quadratic form in a change X
+    /// of F [Pa]: even |X_e|^2 + odd |X_o|^2 - volume (R : X)^2. R is the rotation nearest to F. X = X_e + X_o, where
+    /// X_e = R X_e^T R stretches and X_o = -R X_o^T R rotates.
     template <class T>
     struct FrameBound {
         LaneMat3<T> R;
@@ -57,7 +58,7 @@ struct Ogden {
     template <class T>
     static FrameBound<T> frame_bound(const MaterialConstants& material, const LaneMat3<T>& F);
 
-    /// Adds an upper bound of dP/dF to H. The part due to the energy of shape changes is taken at least as large as in
+    /// Adds an upper bound of dP/dF to H. The part due to the energy of shape changes is never taken below its value in
     /// the rest shape, because a compressed element regains this stiffness when it expands.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {

@@ -103,7 +103,7 @@ T Orthotropic::rough_stiffness_bound(const MaterialConstants& material, const T&
     const T cube_root = exp_of(log_of(regular ? J : T{} + 1.0) * (1.0 / 3)), area = cube_root * cube_root;
     const T most = 1.0 + square_root(at_least(square / area - 3.0, 0)), by_volume = area * (most * most);
     const T largest = regular & (by_volume < square) ? by_volume : square;  // upper bound of the squared stretches of F
-    // |2 E|^2 is the sum of (s^2 - 1)^2 over the stretches s.
+    // |2 E|^2 is the sum of (s^2 - 1)^2 over the stretches s, with Green's strain E.
     const T strain = 0.5 * square_root(at_least(square * (largest - 2.0) + 3.0, 0));
     const Real stiffest = material.shear_modulus * largest_mode(material), lambda = std::max(material.lame_lambda, 0.0);
     return stiffest * (largest + strain) + lambda * (square + 0.5 * at_least(square - 3.0, 0)) +
@@ -180,8 +180,8 @@ Mat3 normal_stiffness(const OrthotropicModuli& moduli) {
 }
 
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material) {
-    // The isotropic part has nine tenths of the smallest eigenvalue of the stiffness, so the rest stays positive
-    // definite.
+    // The isotropic part of the stiffness has nine tenths of the smallest eigenvalue of the stiffness. So the stiffness
+    // minus the isotropic part stays positive definite.
     constexpr Real isotropic_share = 0.9;
     const Mat3 normal = normal_stiffness(moduli);
     const Vec3& G = moduli.shear_modulus;

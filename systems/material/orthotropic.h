@@ -1,5 +1,5 @@
-// Orthotropic elasticity: St. Venant-Kirchhoff law with the stiffness C, Psi = E : C : E / 2 and P = F (C : E) with
-// Green's strain E = (F^T F - I)/2 (docs/methods/elasticity.md 2.6).
+// Orthotropic elasticity: St. Venant-Kirchhoff law with the stiffness C. Energy density Psi = E : C : E / 2 and first
+// Piola-Kirchhoff stress P = F (C : E), with Green's strain E = (F^T F - I)/2 (docs/methods/elasticity.md 2.6).
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace skerry {
 
 /// systems/material/with_law.h describes the members of a material law. orthotropic.cpp defines and instantiates the
 /// templates that have no body here. C = mu sum_k M_k (x) M_k + lambda I (x) I with the matrices M_k of
-/// MaterialConstants::strain_modes.
+/// MaterialConstants::strain_modes, the identity I, and (x) for the dyadic product.
 struct Orthotropic {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
@@ -37,7 +37,7 @@ struct Orthotropic {
     static T stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F) {
         return rough_stiffness_bound(material, inner_product(F, F), determinant(F));
     }
-    /// Upper bound of the largest eigenvalue of dP/dF, from |F|^2 and det F alone [Pa].
+    /// Upper bound of the largest eigenvalue of dP/dF, from `square` = |F|^2 and `J` = det F alone [Pa].
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J);
 
@@ -51,8 +51,8 @@ struct Orthotropic {
     static Slope<T> slope(const MaterialConstants& material, const LaneMat3<T>& F);
 
     /// Adds an upper bound of dP/dF to H. It differs from dP/dF in two terms. The geometric stiffness (due to the
-    /// stress) is replaced by its largest eigenvalue times the identity, or 0 if that is negative. Compressed elements
-    /// get additional stiffness, up to that of the rest shape, which they regain when they expand.
+    /// stress) is replaced by its largest eigenvalue times the identity, or by 0 if this eigenvalue is negative.
+    /// Compressed elements get additional stiffness, up to that of the rest shape, which they regain when they expand.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const Slope<T> part = slope(material, F);
@@ -62,10 +62,10 @@ struct Orthotropic {
     }
 };
 
-/// Sets the elastic constants of an orthotropic material. The Lame constants become those of an isotropic material that
-/// is not stiffer in any direction of strain. The Maxwell elements, which model losses, use these constants, so the
-/// stability bound holds for them, too. Requires valid moduli: positive shear moduli, and a positive definite
-/// compliance of the normal strains.
+/// Sets the elastic constants of an orthotropic material. Its Lame constants become those of an isotropic material that
+/// is not stiffer than the orthotropic one for any strain. The Maxwell elements, which model losses, use these Lame
+/// constants. So the bound on the stable step holds for them, too. Requires valid moduli: positive shear moduli, and a
+/// positive definite compliance of the normal strains.
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material);
 
 /// Rotates the axes of an orthotropic material by `rotation`.

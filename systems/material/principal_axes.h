@@ -54,8 +54,8 @@ template <class T>
 
 }  // namespace principal_axes_detail
 
-/// Decomposes F in each lane. The right axes are the eigenvectors of F^T F, from a fixed number of Jacobi rotations
-/// (Golub, Van Loan, 8.5), so that no lane depends on the others. Equal stretches need no special treatment.
+/// Decomposes F in each lane. The right axes are the eigenvectors of F^T F. They come from a fixed number of Jacobi
+/// rotations (Golub, Van Loan, 8.5), so that no lane depends on the others. Equal stretches need no special treatment.
 template <class T>
 LaneAxes<T> principal_axes(const LaneMat3<T>& F) {
     using namespace principal_axes_detail;

@@ -1,5 +1,5 @@
-// Relaxing part of the stress, given by Maxwell elements: losses that hardly depend on frequency, and bulk viscosity
-// (docs/methods/elasticity.md 6).
+// Part of the stress that relaxes, given by Maxwell elements: springs in series with dashpots. It causes losses that
+// hardly depend on frequency, and the bulk viscosity (docs/methods/elasticity.md 6).
 #pragma once
 
 #include <array>
@@ -66,8 +66,8 @@ template <class T>
     return multiply(F, S) + P.of_other * P.other;
 }
 
-/// Spring strains summed over all Maxwell elements, doubled. `volume`: volume strain of the spring of the bulk
-/// viscosity, doubled.
+/// Doubled spring strains, summed over all Maxwell elements: the stress of the springs depends only on these sums.
+/// `volume`: doubled volume strain of the spring of the bulk viscosity.
 template <class T>
 struct ViscousStretch {
     LaneSymmetric<T> strain;
@@ -88,20 +88,19 @@ struct MaxwellSprings {
     }
 };
 
-/// Stiffnesses of the springs of the Maxwell elements [Pa]. `mu` and `lambda`: Lame constants of the material times the
-/// ratio relaxing_share. Each of the maxwell_count equal springs has these constants. `bulk`: stiffness of the spring
+/// Stiffnesses of the springs of the Maxwell elements [Pa]. Each of the maxwell_count equal springs has the Lame
+/// constants `mu` and `lambda`: those of the material times the ratio relaxing_share. `bulk`: stiffness of the spring
 /// of the bulk viscosity, which resists only changes of volume.
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };
 
-/// Ratio of the lowest frequency of a free body to the lower end of the band of relaxation rates. It is so large
-/// because bodies may be held: a held end makes the lowest frequency of a beam six times lower, and the band must still
-/// contain this frequency.
+/// Ratio of the lowest frequency of a free body to the lower end of the band of relaxation rates. Bodies may be held,
+/// and a held end makes the lowest frequency of a beam six times lower. With the ratio 12 the band contains it, too.
 inline constexpr Real rates_below = 12;
 
-/// Relaxation rates of the Maxwell elements. On a logarithmic scale they lie in the middles of equal sections of a band
-/// from `highest / span` to `highest` [1/s].
+/// Relaxation rates of the Maxwell elements [1/s]. The band from `highest / span` to `highest` is divided into equal
+/// sections on a logarithmic scale; each rate is the middle of a section.
 inline RelaxationRates relaxation_rates(Real highest, Real span) {
     RelaxationRates rates;
     for (std::size_t k = 0; k < maxwell_count; ++k)
@@ -114,7 +113,8 @@ inline RelaxationRates relaxation_rates(Real highest, Real span) {
 /// lowest frequency is taken to be rates_below times the lower end of the band of rates.
 ///
 /// Derivation: a mode with the motion exp(z t), where z = omega (i - eta/2), needs the stiffness -z^2 times its mass. A
-/// Maxwell element of rate r adds the fraction z / (z + r) to the stiffness of the law.
+/// Maxwell element of rate r and share 1 adds the fraction z / (z + r) to the stiffness of the law. Stiffness needed
+/// and stiffness present must have the same ratio of imaginary to real part.
 inline Real relaxing_share(Real loss_factor, Real span) {
     const std::complex<Real> z = rates_below * std::complex<Real>(-loss_factor / 2, 1), needed = -z * z;
     std::complex<Real> added = 0;
@@ -131,7 +131,7 @@ inline Real8 springs_that_count(const RelaxationRates& rates, const Real8& step)
     return count;
 }
 
-/// Relaxation time of the bulk viscosity times the highest frequency of the element at rest (own_frequency).
+/// Relaxation time of the bulk viscosity, times the highest circular frequency of the element at rest (own_frequency).
 inline constexpr Real bulk_time = 0.5;
 
 inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real relaxing_share) {

@@ -1,6 +1,6 @@
-// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018). The energy is finite for every F, even inverted or flat:
-// Psi = mu/2 (Ic - 3) + la/2 (J - alpha)^2 - mu/2 log(Ic + 1), minus its value in the rest shape, with Ic = |F|^2, J =
-// det F and alpha = 1 + 3 mu / (4 la).
+// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018). The energy density is finite for every F, even inverted or
+// flat: Psi = mu/2 (Ic - 3) + la/2 (J - alpha)^2 - mu/2 log(Ic + 1), minus its value in the rest shape, with Ic =
+// |F|^2, J = det F and alpha = 1 + 3 mu / (4 la).
 #pragma once
 
 #include "components/material_table.h"
@@ -38,8 +38,8 @@ struct StableNeoHookean {
     /// 2 mu Ic / (Ic + 1)^2 over Ic = |F|^2, reached at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa], with Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu,
-    /// the stretches s of F and the stretches c of cof F (k: axis other than i and j):
+    /// dP/dF in the form of Tangent [Pa]. Symbols: Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)),
+    /// p = la (J - 1) - 3/4 mu, the stretches s of F, the stretches c of cof F, and the axis k other than i and j:
     ///     normal_ii = a + 2 mu/(Ic + 1)^2 s_i^2 + la c_i^2
     ///     normal_ij = 2 mu/(Ic + 1)^2 s_i s_j + la c_i c_j + p s_k
     ///     flip_k    = a - p s_k
@@ -83,8 +83,8 @@ struct StableNeoHookean {
                two_over_root_three * square_root(slope * slope * inner_product(F, F));
     }
 
-    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone. It uses the inequalities |cof F|^2 <=
-    /// |F|^4/3 and 2/sqrt(3) |F| <= |F|^2/3 + 1. In the rest shape this bound equals stiffness_bound.
+    /// Upper bound of stiffness_bound, computed from `square` = |F|^2 and `J` = det F alone. It uses the inequalities
+    /// |cof F|^2 <= |F|^4/3 and 2/sqrt(3) |F| <= |F|^2/3 + 1. In the rest shape this bound equals stiffness_bound.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const auto [mu, la] = model_moduli(material);
@@ -96,9 +96,9 @@ struct StableNeoHookean {
     ///     mu (1 - 1/(Ic + 1)) X + 2 mu/(Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F),
     /// where d(cof F) is the change of cof F.
     ///
-    /// The coefficient of X decreases under compression and is zero at F = 0. A step length from so small a stiffness
-    /// would be too long as soon as the element expands again. So the bound uses at least the value of this coefficient
-    /// in the rest shape, 3/4 mu.
+    /// The coefficient of X decreases under compression and is zero at F = 0. A step length computed from so small a
+    /// stiffness would be too long as soon as the element expands again. So the bound replaces the coefficient by its
+    /// value in the rest shape, 3/4 mu, where it is smaller.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

@@ -9,8 +9,8 @@
 namespace skerry {
 
 Stretches::Stretches(const Mat3& F) {
-    // Uses the eigenvalues of F^T F, which takes a third of the time of a singular value decomposition (SVD). The SVD
-    // is needed if a stretch is so small that its square is lost in rounding.
+    // Uses the eigenvalues of F^T F. They take a third of the time of a singular value decomposition (SVD). The SVD is
+    // needed if a stretch is so small that its square is lost in rounding.
     constexpr Real flat = 1e-4;  // least ratio of the smallest to the largest squared stretch for the use of F^T F
     const SymmetricEigen squares = symmetric_eigen(F.transpose() * F);
     const Vec3& squared = squares.values;

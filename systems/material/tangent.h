@@ -11,14 +11,14 @@ namespace skerry {
 /// dP/dF of a material law in the principal axes of F = left diag(s) right^T [Pa]. A change X of F has the components
 /// X' = left^T X right in these axes. The change of stress then has `normal` times the vector of all X'_ii on the
 /// diagonal, and (flip + twist)/2 X'_ij + (flip - twist)/2 X'_ji off the diagonal (Stomakhin, Howes, Schroeder, Teran
-/// 2012; Smith, de Goes, Kim 2018). Entry k of `flip` and `twist` belongs to the axes i, j other than k. No eigenvalue
-/// of dP/dF in this form is negative.
+/// 2012; Smith, de Goes, Kim 2018). Entry k of `flip` and `twist` belongs to the axes i, j other than k. Negative
+/// eigenvalues of dP/dF are replaced by 0 in this form.
 struct Tangent {
     Mat3 left, right;
     Mat3 normal;
     Vec3 flip, twist;
-    // Further parts of dP/dF that only anisotropic laws have: dF is also mapped to sum_k (D_k : dF) D_k + dF S, with
-    // the matrices D_k of `dyads` and the symmetric matrix S = `second_stress` [Pa^(1/2) and Pa].
+    // Further parts of dP/dF that only anisotropic laws have. They map a change X of F to sum_k (D_k : X) D_k + X S,
+    // with the matrices D_k of `dyads` and the symmetric matrix S = `second_stress` [Pa^(1/2) and Pa].
     std::array<Mat3, 7> dyads{};
     Mat3 second_stress{};
     bool is_anisotropic = false;

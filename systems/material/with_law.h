@@ -17,8 +17,8 @@ namespace skerry {
 ///
 ///     has_frame           true if the law uses a frame that rotates with the element: then all functions by lanes take
 ///                         R, the rotation nearest to F
-///     stiffness_varies    elements share the mass of a node in proportion to their stiffness_bound by lanes; true: in
-///                         the present shape, false: in the rest shape
+///     stiffness_varies    true if the stiffness depends on the deformation: then stiffness_bound by lanes is a factor
+///                         on the share that an element gets in the mass of its nodes
 ///     stress_flops        number of operations of stress by lanes per tetrahedron, for profile_elements
 ///     energy_density, stress, stiffness_bound (material, F)     for one element, the simple reference for the kernels
 ///     tangent (material, F)                                     for one element, for Newton steps

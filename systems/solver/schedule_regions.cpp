@@ -17,9 +17,11 @@ namespace {
 constexpr Real single_cost = 0.06;
 constexpr Real region_cost = 0.1, contact_cost = 0.06;  // per region, per contact: loading, warm start, writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
-constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1 microsecond
-// Number of tasks per worker. The last worker then finishes late by at most about one task, a quarter of the mean time
-// per worker.
+// Limits of the predicted cost of a task. The lower limit is several times the cost of starting a task, about 1
+// microsecond.
+constexpr Real largest_task = 50, smallest_task = 4;
+// Number of tasks per worker. The worker that finishes last is then late by at most about one task, a quarter of the
+// mean time per worker.
 constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;
@@ -39,9 +41,9 @@ Index contact_count(const RegionTable& regions, Index region) {
            static_cast<Index>(regions.joints_of(r).size() + regions.cables_of(r).size());
 }
 
-/// Identifier of a region without contacts, from the index of its first joint block, or of its first cable if it has no
-/// joints. Its first word exceeds that of every contact key, because regions without contacts come last in the list,
-/// which must ascend.
+/// Identifier of a region without contacts. It contains the index of the first joint block of the region, or of its
+/// first cable if it has no joints. Regions without contacts come last in the list of regions, whose identifiers must
+/// ascend. So the first word of the identifier exceeds that of every contact key.
 ContactKey id_without_contacts(const RegionTable& regions, std::size_t region) {
     constexpr std::uint64_t last = ~std::uint64_t{0}, of_cable = std::uint64_t{1} << 32;
     const std::span<const Index> joints = regions.joints_of(region);
@@ -67,7 +69,7 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
 }
 
 /// Sorts the regions: those too large for lanes by descending cost, then the small ones by descending size. The
-/// counting sort places small regions of equal size next to each other.
+/// counting sort places small regions of equal size next to each other, so that lanes can solve them together.
 void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
     // For each size class, from large to small: index in regions.order at which the next region of the class is
@@ -100,7 +102,8 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
             present.sweeps[r] = no_history;
             present.age[r] = 0;
             if (key.empty()) continue;
-            // Contacts ascend by key and regions by their first contact, so the identifiers ascend in both lists.
+            // Contacts ascend by key and regions by their first contact. So the identifiers ascend in the list of this
+            // step and in that of the previous step.
             const ContactKey id =
                 regions.contacts[r].empty() ? id_without_contacts(regions, r) : key[regions.contacts[r][0]];
             regions.id[r] = present.id[r] = id;
@@ -133,8 +136,8 @@ void schedule_regions(Executor& executor, const SolverSettings& settings, Region
     const int workers = executor.worker_count();
     const Real share = total / (tasks_per_worker * workers);
     const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
-    // Each pass writes to the open task, and `tasks` advances only if the task is full. So the loop has no branch that
-    // the processor could mispredict.
+    // Each pass of the loop writes the task that is being filled. `tasks` advances only if this task is full. So the
+    // loop has no branch that the processor could mispredict.
     memory.task.resize(regions.size());
     std::size_t tasks = 0;
     Index begin = 0;

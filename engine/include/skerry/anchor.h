@@ -11,8 +11,8 @@ namespace skerry {
 
 /// A point that is fixed to a body, to a collider, or to the world if neither is given.
 ///
-/// The point of a rigid body may be anywhere. The point of a deformable body must be inside the body, or outside at a
-/// distance of at most one mean edge length of its surface. It moves with the nearest tetrahedron.
+/// On a rigid body the point may be anywhere. On a deformable body the point moves with the nearest tetrahedron. It
+/// must be inside the body, or outside at a distance of at most one mean edge length of the body's surface.
 struct Anchor {
     std::optional<BodyHandle> body{};          // the anchor moves with this body; not together with `collider`
     std::optional<ColliderHandle> collider{};  // the anchor moves with this collider

@@ -13,12 +13,12 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Control of a cable. Exactly one member must be given. A cable never pushes.
+/// The quantity of a cable that is prescribed. Exactly one member must be given. A cable pulls, but never pushes.
 struct CableDrive {
     std::optional<TimeTable> tension{};  // tension of the first segment, >= 0 [N]
-    std::optional<TimeTable> length{};   // greatest length of the cable, > 0 [m]
-    // Rate of change of the cable's greatest length, which starts at the present length; negative: draws the cable in
-    // [m/s]
+    std::optional<TimeTable> length{};   // greatest length of the cable, > 0 [m]; a shorter cable is slack
+    // Rate of change of the cable's greatest length, which starts at the present length [m/s]. A negative rate draws
+    // the cable in.
     std::optional<TimeTable> rate{};
 };
 
@@ -27,8 +27,9 @@ struct CableDrive {
 struct CableSettings {
     std::vector<Anchor> points;  // points of the cable, at least two; neighbours must not coincide
     CableDrive drive;            // prescribed tension, greatest length or rate
-    // Friction coefficient mu at the points between the first and the last, >= 0. A cable that bends by the angle theta
-    // at a point slides there if the tensions on both sides have the ratio exp(mu theta) (Euler and Eytelwein).
+    // Friction coefficient mu at the points between the first and the last, >= 0. Where the cable bends by the angle
+    // theta, it slides over the point if the ratio of the tensions on both sides reaches exp(mu theta) (Euler and
+    // Eytelwein).
     Real friction = 0;
 };
 
@@ -38,7 +39,7 @@ struct CableState {
     std::vector<Real> tension;   // tension of each segment in the last step [N]
     Real length = 0;             // present length [m]
     Real rate = 0;               // present rate of the length [m/s]
-    // greatest length that the cable can have now; empty if its tension is prescribed [m]
+    // greatest length of the cable at present [m]; empty if its tension is prescribed
     std::optional<Real> released{};
     Real work = 0;        // work of the drive on the cable since the cable was added [J]
     Real dissipated = 0;  // energy dissipated by friction at the points since the cable was added [J]
@@ -56,11 +57,12 @@ public:
     CableHandle add(const CableSettings& cable);
     /// Points, tensions, length and work of a cable after the last step.
     CableState state(CableHandle cable) const;
-    /// Settings with which add() would make an equal cable now: the points have their present positions.
+    /// Settings with which add() would make a cable like this one in its present state: the points have their present
+    /// positions.
     CableSettings settings(CableHandle cable) const;
-    /// Replaces the drive. A drive equal to the present one changes no bit of the state. With a new rate, the greatest
-    /// length starts at the present length. If the old drive is also a rate, the greatest length keeps its present
-    /// value instead.
+    /// Replaces the drive. A drive equal to the present one changes no bit of the state. If the new drive is a rate,
+    /// the greatest length starts at the present length of the cable. However, if the old drive is a rate, too, the
+    /// greatest length continues from its present value.
     void set_drive(CableHandle cable, const CableDrive& drive);
 };
 

@@ -17,8 +17,7 @@ namespace skerry {
 
 inline constexpr Real standard_pressure = 101325;  // standard atmosphere [Pa]
 
-/// A gas. p V^exponent is constant while no gas flows in or out. p is the absolute pressure and V the volume. At
-/// ambient pressure the gas has the density `density`.
+/// A gas with the absolute pressure p and the volume V. While no gas flows in or out, p V^exponent is constant.
 struct GasFilling {
     Real pressure = 0;                 // pressure above ambient at the start, > -ambient [Pa]
     Real exponent = 1.4;               // polytropic exponent, >= 1; 1: isothermal, 1.4: adiabatic air
@@ -27,10 +26,10 @@ struct GasFilling {
     TimeTable inflow{};                // flow of gas into the cavity, negative to draw gas out [kg/s]
 };
 
-/// A liquid whose volume is prescribed, for example by a syringe. The pressure above ambient is bulk_modulus log(volume
-/// / V), with the volume V of the cavity, and at least -ambient. A smaller bulk modulus allows a longer stable step.
-/// The liquid is then compressed by about the fraction pressure / bulk_modulus of its volume, which is often
-/// acceptable.
+/// A liquid whose volume is prescribed, for example by a syringe. In a cavity of the volume V its pressure above
+/// ambient is bulk_modulus log(volume / V), but not less than -ambient (vacuum). The pressure compresses the liquid by
+/// about the fraction pressure / bulk_modulus. A smaller bulk modulus than that of the real liquid allows a longer
+/// stable step, and the additional compression is often acceptable.
 struct LiquidFilling {
     Real bulk_modulus = 2.2e9;  // bulk modulus, > 0; default: water [Pa]
     // volume of the liquid at ambient pressure, > 0; default: the volume of the cavity when it is added [m^3]
@@ -47,10 +46,10 @@ struct CavitySettings {
     std::optional<std::vector<std::array<Index, 3>>> faces{};
     // Prescribed pressure, gas or liquid; default: the pressure 0.
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
-    // Volume of the gas or liquid at the start [m^3]. Required if the faces do not enclose a volume, for example those
-    // of a piston: during a step the volume then changes by the volume that the faces sweep. Calls that place nodes,
-    // such as World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the
-    // saved world. Not allowed for faces that enclose a volume.
+    // Volume of the gas or liquid at the start [m^3]. Required for faces that enclose no volume, such as those of a
+    // piston, and not allowed for faces that enclose one. Steps change this volume by the volume that the faces sweep.
+    // Calls that place nodes, such as World::reset(body), change neither the volume nor the mass of the gas.
+    // World::reset(saved) restores the volume and the mass of the saved world.
     std::optional<Real> volume{};
 };
 
@@ -61,7 +60,7 @@ struct CavityState {
     Index faces = 0;                      // number of faces
     bool closed = false;                  // whether the faces enclose a volume
     Real pressure = 0;                    // pressure above ambient [Pa]
-    Real volume = 0;                      // volume of the cavity; 0 if neither faces nor settings define one [m^3]
+    Real volume = 0;                      // volume of the cavity; 0 if neither faces nor settings define it [m^3]
     Real mass = 0;                        // mass of the gas; 0 for other fillings [kg]
     Real energy = 0;                      // work that the filling would do if it expanded to ambient pressure [J]
     Vec3 force = Vec3::Zero();            // sum of the pressure forces on the body; zero for closed faces [N]
@@ -108,10 +107,10 @@ public:
     CavityState state(CavityHandle cavity) const;
     /// Cavities, conductance and flow of a pipe.
     PipeState state(PipeHandle pipe) const;
-    /// Settings with which add() would make an equal cavity now: pressure and volume of its filling have their present
-    /// values.
+    /// Settings with which add() would make a cavity like this one in its present state: pressure and volume of the
+    /// filling have their present values.
     CavitySettings settings(CavityHandle cavity) const;
-    /// Settings with which add() would make an equal pipe now.
+    /// Settings with which add() would make a pipe like this one.
     PipeSettings settings(PipeHandle pipe) const;
 
     /// Sets the pressure above ambient of a cavity whose pressure is prescribed [Pa]. Throws SceneError for a gas or a

@@ -23,7 +23,7 @@ struct Complaint {
 /// message names the file, the object, the field, the value found and the value expected.
 class SceneError : public std::runtime_error {
 public:
-    /// `complaint` contains the parts of the text that are known.
+    /// `text`: the message. `complaint`: those parts of the message that are known separately.
     explicit SceneError(const std::string& text, Complaint complaint = {});
     explicit SceneError(const Complaint& complaint) : SceneError(complaint.text(), complaint) {}
 

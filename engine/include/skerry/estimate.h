@@ -14,35 +14,36 @@ namespace skerry {
 /// Value of an error that was not estimated.
 inline constexpr Real not_estimated = std::numeric_limits<Real>::quiet_NaN();
 
-/// Estimated errors of one body, relative where no unit is given. A value is `not_estimated` if the error does not
-/// exist for the body, for example the error of the mesh for a rigid body.
+/// Estimated errors of one body, relative where no unit is given. A value is `not_estimated` if the body cannot have
+/// this error; a rigid body, for example, has no error of the mesh. The mesh errors `mesh`, `deflection`,
+/// `interpolation` and `stress` are those of one sample (see ErrorEstimator): the one at which the body has the largest
+/// elastic energy.
 struct ErrorEstimate {
     BodyHandle body{};  // the body
     std::string name;   // name of the body
-    // Error of the stress of the tetrahedra, due to the mesh: energy norm of the error over that of the stress. Of all
-    // samples (see ErrorEstimator), the values `mesh` to `stress` use the one at which the body has the largest elastic
-    // energy.
+    // Error of the stress of the tetrahedra, due to the mesh: e / sqrt(e^2 + s^2), with the energy norms e of the error
+    // and s of the stress.
     Real mesh = not_estimated;
     // Error of the displacement that given loads cause, due to the mesh. Positive if the mesh is too stiff, negative if
     // it is too soft. `deflection` times `deformation` is the relative error of the motion.
     Real deflection = not_estimated;
-    // Error of the displacement of a single node in addition to `deflection`, due to the mesh: root mean square of the
-    // error of linear interpolation along the edges [m].
+    // Error of the displacement of a single node, due to the mesh, which comes in addition to `deflection` [m]: error
+    // of linear interpolation along an edge, as root mean square over the edges.
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: distance of the nodes from their positions with infinitely
-    // short steps, divided by their displacement from the start. Both lengths are root mean squares over the nodes, and
-    // for each the largest of all samples is used. Not estimated for a body at rest.
+    // short steps, divided by their displacement from the start. The distance and the displacement are root mean
+    // squares over the nodes, each at the sample with its largest value. Not estimated for a body at rest.
     Real step = not_estimated;
-    // Displacement by deformation divided by displacement from the start, at most 1; averages and samples as for
-    // `step`. Not estimated for a body at rest.
+    // Displacement by deformation divided by displacement from the start, at most 1. Both displacements are root mean
+    // squares over the nodes, as for `step`. Not estimated for a body at rest.
     Real deformation = not_estimated;
     // Error of the contact impulses, due to the tolerance of the solver: mean of the solver errors of the contact
     // regions of the body, weighted by impulse. Regions in which the solver did not converge are included.
     Real contact = not_estimated;
     Real overlap = not_estimated;  // largest overlap with another object at any sample, 0 if there is none [m]
-    // Largest distance to another object, over all samples, at which a contact carried a force [m]. Contacts act
-    // already within the contact distance, so positions have an error of this size.
+    // Largest distance to another object, over all samples, at which a contact carried a force [m]. Contacts act as
+    // soon as surfaces are closer than the contact distance, so positions have an error of this size.
     Real gap = not_estimated;
     // Radius of the most loaded contact area by the theory of Hertz, and mean edge length of the mesh there [m]. Not
     // estimated where flat faces, edges or corners touch.
@@ -77,9 +78,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Estimated relative error of the present stress of each tetrahedron, due to the mesh: square root of (energy of the
-/// stress error per volume of the tetrahedron / energy of stress and stress error per volume of the body). Empty for a
-/// rigid body. To reduce the error, refine the mesh where the values are largest (Zienkiewicz, Zhu 1987).
+/// Estimated relative error of the present stress of each tetrahedron, due to the mesh: sqrt(e / E). e is the energy of
+/// the stress error of the tetrahedron per volume. E is the energy of the stress and the stress error of the whole body
+/// per volume. Empty for a rigid body. To reduce the error, refine the mesh where the values are largest (Zienkiewicz,
+/// Zhu 1987).
 std::vector<Real> mesh_error(const World& world, BodyHandle body);
 
 }  // namespace skerry

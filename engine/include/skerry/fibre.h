@@ -13,18 +13,18 @@ namespace skerry {
 
 class World;
 
-/// A family of fibres in tetrahedra of a body. Its energy is added to that of the material. Fibres resist only stretch:
-/// W = k_1/(2 k_2) (exp(k_2 E^2) - 1) with E = max(I_4 - 1, 0) and the squared stretch I_4 (Holzapfel, Gasser, Ogden
-/// 2000); for k_2 = 0 its limit k_1 E^2 / 2.
+/// A family of fibres in tetrahedra of a body. Fibres resist stretch, but not compression. Their energy per rest volume
+/// is added to that of the material: W = k_1/(2 k_2) (exp(k_2 E^2) - 1), or k_1 E^2 / 2 if k_2 = 0. E = max(I_4 - 1,
+/// 0), with the squared stretch I_4 of the fibres (Holzapfel, Gasser, Ogden 2000).
 struct FibreSettings {
     BodyHandle body{};  // explicit body, or implicit body if Settings::theta is 1
     // Numbers of tetrahedra in the mesh of the body, each at most once; empty: all tetrahedra
     std::vector<Index> tetrahedra{};
     // Directions in the frame of the mesh, of any length except zero: one for all of `tetrahedra`, or one for each.
     std::vector<Vec3> direction{Vec3::UnitX()};
-    // Constant k_1 of the energy, >= 0. Near the rest length, fibres have Young's modulus 4 k_1 [Pa].
+    // Constant k_1 of the energy, >= 0 [Pa]. Fibres that are stretched a little have Young's modulus 4 k_1.
     Real stiffness = 0;
-    Real exponent = 0;      // constant k_2 of the energy, >= 0
+    Real exponent = 0;      // constant k_2 of the energy, >= 0 [1]
     TimeTable tension = 0;  // active tension >= 0: force along the fibres per area of the rest shape [Pa]
 };
 

@@ -25,15 +25,16 @@ struct FillSettings {
     // Factor for all coordinates of the surfaces, > 0. All other lengths are those after scaling.
     Real scale = 1;
     // Edge length of the new tetrahedra and of their surface, > 0 [m]. If it is not given, the triangles of a clean
-    // surface (see fill()) are kept; for other surfaces it is a twentieth of the diagonal of their bounding box.
+    // surface (see fill()) are kept, and other surfaces get edges of a twentieth of the diagonal of their bounding box.
     std::optional<Real> edge{};
-    // Largest distance between the given and the new surface, as a fraction of the diagonal of the bounding box, from 0
-    // to below 1. With 0 the triangles of the surface are kept; surfaces that are not clean are then refused.
+    // Largest allowed distance between the given and the new surface, as a fraction of the diagonal of the bounding
+    // box, from 0 to below 1. With 0 the triangles of a clean surface are kept, and other surfaces are refused.
     Real tolerance = 1e-3;
-    // A shell inside another shell is the boundary of an empty cavity if this is true, or if the triangles of the inner
-    // shell are clockwise as seen from its outside. Otherwise it is the boundary of a region with a label of its own.
+    // Meaning of a shell (triangles connected by common edges) that lies inside another shell. true: it bounds an empty
+    // cavity. false: it bounds an empty cavity if its triangles are clockwise as seen from its outside, otherwise a
+    // region with a label of its own.
     bool cavities = false;
-    MaterialSettings material{};  // if several meshes are made, fill() compares their stable steps for this material
+    MaterialSettings material{};  // material for which the stable steps of the candidate meshes are compared
     FillLimits limits{};          // limits of each run of a mesher
     // Python interpreter with the package wildmeshing. If it is empty: the value of the environment variable
     // SKERRY_FILL_PYTHON, or else python3 in PATH.
@@ -45,7 +46,7 @@ struct SurfaceDistance {
     Real from_first = 0, from_second = 0;            // largest distance from first to second, and back
     Real mean_from_first = 0, mean_from_second = 0;  // mean distance from first to second, and back
 
-    /// The larger one of both largest distances.
+    /// The larger one of from_first and from_second.
     Real greatest() const { return from_first > from_second ? from_first : from_second; }
 };
 
@@ -53,11 +54,11 @@ struct SurfaceDistance {
 struct FilledMesh {
     Mesh mesh;                   // tetrahedra, with labels of regions and sets of shells; see fill()
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
-    bool exact = false;          // true if the new surface is SurfaceReport::cleaned, bitwise
+    bool exact = false;          // true if the new surface equals SurfaceReport::cleaned, bitwise
     SurfaceReport surface;       // check of the given surface
     SurfaceDistance distance{};  // distance from SurfaceReport::cleaned (first) to the new surface (second)
     Real tolerance = 0;          // largest distance that was allowed [m]
-    // Volume inside the given surface [m^3]; empty if the surface is not closed or its shells cross each other.
+    // Volume inside the given surface, without cavities [m^3]; empty unless SurfaceReport::can_be_filled() is true.
     std::optional<Real> surface_volume{};
     Real stable_step = 0;            // stable step of an explicit body of this mesh [s]
     std::vector<std::string> notes;  // corrections of the surface, regions, and failures of meshers
@@ -65,20 +66,20 @@ struct FilledMesh {
     bool may_change = false;
 };
 
-/// Function that fill() calls many times a second with a description of the current activity. If it throws, fill() ends
-/// with this exception.
+/// Function that fill() calls many times a second with a description of its current activity. If the function throws,
+/// fill() ends with this exception.
 using FillProgress = std::function<void(const std::string&)>;
 
-/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Clean surfaces (closed manifolds without
-/// crossings) are filled by Netgen, which keeps them bitwise, unless `edge` requests other triangles. Other surfaces
-/// are filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are
-/// closed, and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own
-/// process. If several meshes are made, the one with the longest stable step is returned
-/// (docs/decisions/0026-filling-surfaces.md).
+/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Netgen fills clean surfaces (closed
+/// manifolds without crossings), and keeps their triangles bitwise unless `edge` requests others. fTetWild (Hu et al.,
+/// Fast tetrahedral meshing in the wild, 2020) fills other surfaces within the tolerance: it closes holes and unites
+/// crossing shells, and repeated runs give slightly different meshes. Each mesher runs in its own process. If several
+/// meshes are made, the one with the longest stable step is returned (docs/decisions/0026-filling-surfaces.md).
 ///
-/// If a region lies inside another shell, the regions have the labels 1, 2, ..., beginning with the region of the
-/// largest shell. If there are nested shells or several files, the faces of each shell form a set. Its name is that of
-/// the file without extension if there are as many files as shells, otherwise shell_1, shell_2, ...
+/// A shell consists of triangles connected by common edges. If a shell that bounds a region lies inside another shell,
+/// the regions have the labels 1, 2, ..., beginning with the region of the largest shell. If there are nested shells or
+/// several files, the faces of each shell form a set. If there are as many files as shells, the set has the name of the
+/// file without extension, otherwise shell_1, shell_2, ...
 ///
 /// Identical shells are used once, and a note reports them. A note also reports if the new surface is farther from the
 /// given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a file
@@ -92,10 +93,10 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
 
 /// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
 /// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance`, `cavities` and whether
-/// skerry-fill (the program that runs Netgen) is installed. It does not contain `material`: stable steps are compared
+/// skerry-fill (the program that runs Netgen) is installed. It does not depend on `material`: the best mesh is chosen
 /// for the default material, so one file serves all materials. A text file beside the cache file keeps the notes of the
-/// filling. A mesh is not kept if skerry-fill is installed and FilledMesh::may_change is true. `notes`: gets the notes
-/// of reading and filling, also if the mesh comes from the cache file, and a note if the mesh was not kept.
+/// filling. No cache file is written if FilledMesh::may_change is true although skerry-fill is installed. `notes` gets
+/// the notes of reading and filling, also if the mesh comes from the cache file, and a note if no file was written.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

@@ -15,8 +15,8 @@ struct WorldState;  // internal type, declared outside the pragma that exports s
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Forces on a body or a collider, summed over all steps of the last call of advance. Of a step that needed several
-/// attempts, only the last attempt counts.
+/// Forces on a body or a collider, summed over all committed steps of the last call of advance. Discarded attempts at a
+/// step contribute nothing.
 struct ForceReport {
     Vec3 impulse = Vec3::Zero();  // sum of the impulses on the object [N s]
     // Sum of the moments of the impulses about `moment_point` [N m s]. Each impulse acts at its contact point at the
@@ -29,10 +29,11 @@ struct ForceReport {
     Real largest_force = 0;
     Index contacts = 0;       // number of contacts with an impulse in the last step
     Index most_contacts = 0;  // largest number of contacts with an impulse in any step
-    // Sum of the force intervals of the steps [s]. The forces of a step act from the middle of the previous step to the
-    // middle of this step. So the sum is the duration of the call plus half of (length of the last step before the call
-    // - length of the last step of the call). With leapfrog and for implicit bodies, forces act from start to end of a
-    // step, and the sum is the duration (docs/methods/time_stepping.md 1.5).
+    // Sum of the force intervals of the steps [s]. The force interval of a step is the time during which its forces
+    // act: from the middle of the previous step to the middle of this step. The sum is therefore the duration of the
+    // call plus half of (length of the last step before the call - length of the last step of the call). With leapfrog
+    // and for implicit bodies, the force interval is the step, and the sum is the duration
+    // (docs/methods/time_stepping.md 1.5).
     Real seconds = 0;
     Vec3 moment_point = Vec3::Zero();  // point about which moments are taken, as given to measure_forces [m]
     // False if the call was too short for the force to be measured (docs/outputs.md), or took no step.
@@ -68,9 +69,9 @@ struct PairForces {
 /// momentum of the body during this time, divided by this time (at least sleep_time). If forces were not measured
 /// during this time, the forces of the last step before the sleep are used (World::contacts).
 ///
-/// The impulses on the two partners of a pair are exactly opposite. Their moments differ by the moment of friction
-/// across the distance of the two surfaces, because each impulse acts on the nodes of its own body, or at the point of
-/// the collider.
+/// The impulses on the two partners of a pair are exactly opposite, but their moments about one point are not. Each
+/// impulse acts at the surface of its own object. Where there is a gap between the two surfaces, friction exerts a
+/// moment across this gap.
 class Forces {
 public:
     /// Sum of the forces of all contacts on a body. Contacts of a body with itself add only to `contacts` and
@@ -84,8 +85,8 @@ public:
     ForceReport on(ColliderHandle collider, BodyHandle by) const;
     /// Forces of an attachment on its body. They keep the attached nodes on their prescribed motion: they balance
     /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, the
-    /// force on this node counts for the attachment added last. The force of MaterialSettings::damping is not included:
-    /// on a body with held nodes it acts on all nodes, like the drag of a medium at rest.
+    /// force on this node belongs to the attachment added last. The drag by MaterialSettings::damping is not included.
+    /// It acts on all nodes of a body with held nodes, as if the body were in a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
     /// All pairs of objects that touched during the last call of advance: first body-collider pairs, then body-body
     /// pairs, each sorted by handles.

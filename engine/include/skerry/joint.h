@@ -14,13 +14,13 @@ namespace skerry {
 
 /// Key of a motor: a target speed or a target coordinate at an absolute time. Exactly one of the two must be given.
 struct MotorKey {
-    Real time = 0;                   // [s]
-    std::optional<Real> speed{};     // [rad/s or m/s]
-    std::optional<Real> position{};  // [rad or m]
+    Real time = 0;                   // absolute time [s]
+    std::optional<Real> speed{};     // target speed [rad/s or m/s]
+    std::optional<Real> position{};  // target coordinate [rad or m]
 };
 
-/// A motor on the axis of a hinge or a slider. Exactly one of `speed`, `position` and `keys` must be given. The motor
-/// reaches and holds this target as far as `strength` allows.
+/// A motor on the axis of a hinge or a slider. Exactly one of `speed`, `position` and `keys` must be given as its
+/// target. The motor reaches and holds the target as far as its largest moment or force `strength` allows.
 struct JointMotor {
     std::optional<Real> speed{};     // target speed [rad/s or m/s]
     std::optional<Real> position{};  // target coordinate of the joint, reached within one step if possible [rad or m]
@@ -32,8 +32,8 @@ struct JointMotor {
     std::vector<MotorKey> keys{};
 };
 
-/// Spring, damper and dry friction on the axis of a joint. They exert a moment on a hinge, and a force on a slider,
-/// whether or not the joint has a motor (docs/methods/joints.md 4).
+/// Spring, damper and dry friction on the axis of a joint. They exert a moment on a hinge and a force on a slider. The
+/// joint may also have a motor (docs/methods/joints.md 4).
 struct JointPassive {
     Real stiffness = 0;  // stiffness of a spring, >= 0 [N m/rad or N/m]
     Real rest = 0;       // coordinate of the joint at which the spring exerts no force [rad or m]
@@ -43,10 +43,10 @@ struct JointPassive {
     bool operator==(const JointPassive&) const = default;
 };
 
-/// Coupling of the coordinate of a hinge or slider to that of another joint, its leader: q = ratio q_leader + offset.
-/// It acts in both directions: forces on one joint move the other one.
+/// Coupling of the coordinate q of a hinge or slider to the coordinate q_leader of another joint, its leader: q = ratio
+/// q_leader + offset. The coupling acts in both directions: forces on one joint move the other one.
 struct JointMimic {
-    JointHandle leader{};  // another hinge or slider, which must not mimic this joint, directly or through others
+    JointHandle leader{};  // another hinge or slider; it must not mimic this joint, directly or through other joints
     Real ratio = 1;        // not 0; [m/rad] or [rad/m] between a slider and a hinge
     Real offset = 0;       // coordinate of this joint if that of the leader is 0 [rad or m]
 
@@ -59,8 +59,8 @@ struct JointLimits {
 };
 
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
-/// joint measures the motion of the first body relative to the second. For a hinge it is the angle about the axis,
-/// counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
+/// joint measures the motion of the first body relative to the second body or the world. For a hinge it is the angle
+/// about the axis, counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
 struct JointSettings {
     JointKind kind = JointKind::ball;  // relative motion that the joint permits
     BodyHandle first{};                // handle of a rigid body
@@ -86,15 +86,15 @@ struct JointState {
     Real coordinate = 0;                 // present coordinate, see JointSettings [rad or m]
     Real speed = 0;                      // rate of the coordinate [rad/s or m/s]
     Vec3 force = Vec3::Zero();           // force acting at `point` [N]
-    Vec3 moment = Vec3::Zero();          // [N m]
-    // Parts of the moment (hinge) or force (slider) along the axis [N m or N]. `passive` is the sum of spring, damper
-    // and friction (JointPassive).
+    Vec3 moment = Vec3::Zero();          // moment [N m]
+    // Parts of the moment (hinge) or force (slider) along the axis [N m or N]: by the motor, by the passive forces
+    // (spring, damper and friction together, see JointPassive), and by the limits of the coordinate.
     Real motor = 0, passive = 0, limit = 0;
     // Moment or force along the axis that makes the joint mimic its leader [N m or N]; `force` and `moment` do not
     // contain it. The leader gets -JointMimic::ratio times this moment or force.
     Real mimic = 0;
-    // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
-    // part of this distance normal to the axis counts.
+    // Position error [m]: distance between the points of the two bodies that the joint should keep together. For a
+    // slider it is the part of this distance normal to the axis.
     Real error = 0;
 };
 
@@ -110,20 +110,21 @@ public:
     JointHandle add(const JointSettings& joint);
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
-    /// Settings with which add() would make an equal joint now: point, axis and coordinate have their present values.
-    /// They do not contain the coupling to a leader; see mimic().
+    /// Settings with which add() would make a joint like this one in its present state: point, axis and coordinate have
+    /// their present values. The settings do not contain the coupling to a leader; see mimic().
     JointSettings settings(JointHandle joint) const;
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
     /// present one changes no bit of the state.
     void set_motor(JointHandle joint, const std::optional<JointMotor>& motor);
     /// Sets or removes the limits of the joint coordinate. A joint beyond a limit is pulled back at a bounded speed.
-    /// For a slider this bound is recovery_speed plus the speeds at the joint due to the angular velocities of both
-    /// bodies. For a hinge it is 1 rad/s plus both angular speeds.
+    /// For a slider the upper limit of this speed is Settings::recovery_speed plus the speeds that the angular
+    /// velocities of both bodies cause at the joint. For a hinge it is 1 rad/s plus both angular speeds.
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
     /// Sets spring, damper and friction of a hinge or a slider.
     void set_passive(JointHandle joint, const JointPassive& passive);
-    /// Makes a hinge or a slider mimic another joint, or ends the coupling if no mimic is given. A deviation is
-    /// corrected at the bounded speed that set_limits describes. Removing the leader ends the mimic.
+    /// Makes a hinge or a slider follow another joint, its leader (JointMimic), or ends the coupling if no mimic is
+    /// given. A deviation from the coupling is corrected at the bounded speed that set_limits() describes. Removing the
+    /// leader ends the coupling.
     void set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic);
     /// Coupling of a joint to the leader that it mimics; empty if it mimics none.
     std::optional<JointMimic> mimic(JointHandle joint) const;

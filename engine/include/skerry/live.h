@@ -29,9 +29,9 @@ struct LiveSettings {
 ///
 /// One thread advances the world and calls the functions of the view. Other threads encode and send the frames. The
 /// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only displays the
-/// world changes no bit of it. After fork(), the server stays with the parent process; the child process can only close
-/// the view, which has no effect on the server. When the first view is made, the process begins to ignore the signal
-/// SIGPIPE, because a browser can end a connection at any time.
+/// world changes no bit of its state. After fork(), the server stays with the parent process; the child process can
+/// only close the view, which has no effect on the server. When the first view is made, the process begins to ignore
+/// the signal SIGPIPE, because a browser can end a connection at any time.
 class LiveView {
 public:
     /// Starts the server, and stores the present state of the world for a reset. Throws SceneError if a setting is out
@@ -46,12 +46,13 @@ public:
 
     /// Address of the page, for example http://127.0.0.1:40123/#token=...
     std::string address() const;
-    /// Ends all connections and stops the server. Afterwards sync(), due() and run() only release the bodies that
-    /// browsers pull, due() returns 0, and fail() does nothing.
+    /// Ends all connections and stops the server. From then on sync(), due() and run() do nothing but release the
+    /// bodies that browsers were pulling with the pointer, due() returns 0, and fail() has no effect.
     void close();
     /// False after close().
     bool is_open() const;
-    // false if the view is paused; a requested single step counts as playing until the next sync()
+    // False if the view is paused. However, true from the request of a single step until the next call of sync() or
+    // due(), so that the caller takes the step.
     bool playing() const;
     int clients() const;  // number of connected browsers
     /// Number of frames sent to browsers.
@@ -59,25 +60,26 @@ public:
     std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
     std::uint64_t resets() const;          // number of resets of the world
 
-    // The following functions must be called between two calls of advance; only between_steps() is called within one.
-    // `world` is the world of the constructor, which may have been moved to another variable meanwhile.
+    // The following functions must be called between two calls of advance, except between_steps(), which is called
+    // during a call. `world` is the world of the constructor; it may have been moved to another variable meanwhile.
 
     /// Carries out the commands that browsers have sent, and shows the world to browsers that are ready for a frame, at
-    /// most 30 times a second of wall time. Commands that fail are reported to the browser that sent them, and change
-    /// nothing. While the view is paused the call then waits for the next command, at most 20 ms. Otherwise it never
-    /// waits, and without a browser it costs two comparisons.
+    /// most 30 times a second of wall time. A command that fails changes nothing, and the browser that sent it gets the
+    /// error. If the view is paused, the call finally waits for the next command, at most 20 ms. If the view plays, the
+    /// call never waits; without a browser it costs two comparisons.
     void sync(World& world);
-    /// Calls sync() and returns the simulated time that is to be advanced now [s]; 0 if the view is paused or the world
-    /// is ahead of the wall clock. With the result 0 it waits for commands, at most 20 ms. The caller must advance the
-    /// world by the result. For a single step the result is the length of one step.
+    /// Does the work of sync(), and returns the simulated time by which the caller must advance the world now [s]. The
+    /// result is 0 if the view is paused or the world is ahead of the wall clock; the call then first waits for
+    /// commands, at most 20 ms. If a browser has requested a single step, the result is the length of one step.
     Real due(World& world);
-    /// Call this in the callback `go_on` of World::advance, and return its result. It shows the world between two steps
-    /// of a long call. It returns false if commands wait, so that the call ends and sync() can carry them out.
+    /// Shows the world between two steps of a long call of World::advance. Call this function in the callback `go_on`
+    /// of that call, and return its result. The result is false if commands of browsers wait: the call of advance then
+    /// ends, so that sync() can carry out the commands.
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. Call it after a step that failed.
     void fail(const std::string& text);
-    /// Refuses resets by browsers with this text, for example while a recorder could not continue at an earlier time.
-    /// An empty text allows them again.
+    /// From now on refuses the resets that browsers request, and shows them the reason. Use this, for example, while a
+    /// recorder could not continue at an earlier time. An empty text allows resets again.
     void refuse_resets(const std::string& reason);
     /// Advances the world as the browsers ask, until `go_on` returns false. `go_on` is called before each step. One
     /// call of advance() covers at most 1/60 s of simulated time. A step that cannot be committed pauses the view;

@@ -24,8 +24,8 @@ struct ForceLoad {
     TimeTable scale = 1;         // factor over time
 };
 
-/// A traction on some surface faces of a body. Its direction is fixed in the world. The nodes of a face share its force
-/// equally.
+/// A traction on some surface faces of a body. Its direction is fixed in the world. The force on a face is divided
+/// equally among the three nodes of the face.
 struct TractionLoad {
     BodyHandle body{};  // body of the faces
     // Faces as World::surface(body) lists them: numbers of nodes in any order; at least one face, each at most once.
@@ -44,8 +44,8 @@ struct AccelerationField {
 };
 
 /// Multiplies the weight, which is the gravity of the settings times the mass. A factor of one body replaces that of
-/// all bodies. The potential energy in reports is still that of the whole weight; the difference counts as work of
-/// loads.
+/// all bodies. The potential energy in reports is that of the whole weight, without the factor. The difference between
+/// scaled and whole weight is treated as a load that does work.
 struct GravityScale {
     // if it is not given, the factor applies to all bodies without a factor of their own
     std::optional<BodyHandle> body{};
@@ -59,7 +59,7 @@ struct DragField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
     Real rate = 0;                     // force per mass and relative velocity, > 0 [1/s]
     Vec3 wind = Vec3::Zero();          // velocity of the wind [m/s]
-    TimeTable scale = 1;               // factor of `wind`
+    TimeTable scale = 1;               // factor of `wind` over time
 };
 
 /// A load of any kind.
@@ -74,7 +74,7 @@ struct LoadState {
     Vec3 vector = Vec3::Zero();
     Real rate = 0;   // rate of a drag [1/s]
     Real scale = 1;  // value of `scale` at the present time
-    // Sum of the present forces on all nodes [N]. For a factor of the weight, the difference from the full weight.
+    // Sum of the present forces on all nodes [N]. For a factor of the weight: the scaled weight minus the full weight.
     Vec3 force = Vec3::Zero();
 };
 

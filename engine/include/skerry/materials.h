@@ -38,33 +38,35 @@ struct KnownFriction {
 
 /// All materials, in groups from soft to stiff.
 std::span<const NamedMaterial> named_materials();
-/// All pairs of materials with known friction coefficients (without unit). A pair is listed once, in either order.
+/// All pairs of materials with known friction coefficients [1]. Each pair is listed once; the order of its two
+/// materials has no meaning.
 std::span<const KnownFriction> known_frictions();
 
 /// Settings of the material called `name`. `friction` is the dynamic friction of two surfaces of this material if
-/// known_frictions() lists the pair, else the default. Loss factors below 0.01 are left out: they belong to stiff
-/// materials, which suit implicit bodies, and implicit bodies accept no loss factor. Throws SceneError if no material
-/// has this name.
+/// known_frictions() lists this pair, else the default. Loss factors below 0.01 are left out, so that the material can
+/// be used for implicit bodies, which accept no loss factor: such small values belong to stiff materials, for which
+/// implicit bodies are suitable. Throws SceneError if no material has this name.
 MaterialSettings named_material(std::string_view name);
 
-/// A term of the law of Ogden in the form of the literature. Modulus mu_p and exponent alpha_p must have the same sign.
+/// A term of the law of Ogden, with the constants that the literature uses; see ogden(). The modulus mu_p and the
+/// exponent alpha_p must have the same sign.
 struct OgdenTerm {
     Real modulus, exponent;  // mu_p [Pa] and alpha_p
 };
-/// `base` with the law of Ogden (1972, eq. 18), split into changes of shape and volume: Psi = sum_p mu_p / alpha_p
-/// (s_1^alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2, with the principal stretches s_i divided by J^(1/3),
-/// J = det F, and the bulk modulus K [Pa]. Sets model, terms, young_modulus and poisson_ratio. Throws SceneError unless
-/// there are one to three terms, mu_p alpha_p > 0 for each, and K > 0.
+/// Returns `base` with the law of Ogden (1972, eq. 18), whose energy per rest volume is split into changes of shape and
+/// of volume: Psi = sum_p mu_p / alpha_p (s_1^alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2. s_i are the
+/// principal stretches divided by J^(1/3), J = det F, and K is the bulk modulus [Pa]. Sets model, terms, young_modulus
+/// and poisson_ratio. Throws SceneError unless there are one to three terms, mu_p alpha_p > 0 for each, and K > 0.
 MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base = {});
 
-/// `base` with the law of Mooney and Rivlin: Psi = c10 (I_1 - 3) + c01 (I_2 - 3) + K/2 (J - 1)^2, with the invariants
-/// I_1, I_2 of the stretches divided by J^(1/3), J = det F, and the constants c10, c01 and K [Pa]. This is the law of
-/// Ogden with the exponents 2 and -2.
+/// Returns `base` with the law of Mooney and Rivlin, whose energy per rest volume is Psi = c10 (I_1 - 3) + c01 (I_2 -
+/// 3) + K/2 (J - 1)^2. I_1 and I_2 are the invariants of the stretches divided by J^(1/3), J = det F, and K is
+/// `bulk_modulus`. c10, c01 and K are in [Pa]. This is the law of Ogden with the exponents 2 and -2.
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base = {});
 
-/// `base` with the law `orthotropic` for strains of some per cent at any rotation. Sets model, orthotropic,
-/// young_modulus and poisson_ratio. Throws SceneError if the stiffness is not positive definite; the message states the
-/// violated condition.
+/// Returns `base` with the law `orthotropic`, which is meant for strains of some per cent at any rotation. Sets model,
+/// orthotropic, young_modulus and poisson_ratio. Throws SceneError if the stiffness is not positive definite; the
+/// message states the violated condition.
 MaterialSettings orthotropic(const OrthotropicModuli& moduli, MaterialSettings base = {});
 
 }  // namespace skerry

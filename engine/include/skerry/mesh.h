@@ -14,8 +14,8 @@
 namespace skerry {
 
 /// A named part of a mesh. A set can list nodes, faces, tetrahedra, or several of these kinds. The functions
-/// nodes_of(), faces_of() and tetrahedra_of() of the namespace mesh return the parts of one kind that a set lists or
-/// implies.
+/// nodes_of(), faces_of() and tetrahedra_of() of the namespace mesh return the items of one kind that a set lists, or
+/// that follow from its other lists.
 struct MeshSet {
     std::vector<Index> nodes{};                 // indices of nodes, ascending
     std::vector<std::array<Index, 3>> faces{};  // three nodes of each face
@@ -29,7 +29,7 @@ struct MeshSet {
 /// A tetrahedral mesh in its own coordinate frame. The rows of `tetrahedra` are indices into `nodes`. A tetrahedron
 /// with the nodes n0 to n3 is positive if det(n1 - n0, n2 - n0, n3 - n0) > 0.
 struct Mesh {
-    std::vector<Vec3> nodes;                       // [m]
+    std::vector<Vec3> nodes;                       // positions of the nodes [m]
     std::vector<std::array<Index, 4>> tetrahedra;  // indices of nodes
     // Label of each tetrahedron, for example the number of its material. BodySettings::materials maps labels to
     // materials. An empty list means that the mesh has no labels.
@@ -48,7 +48,7 @@ struct Mesh {
 
 /// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.
 struct SurfaceMesh {
-    std::vector<Vec3> nodes;                      // [m]
+    std::vector<Vec3> nodes;                      // positions of the nodes [m]
     std::vector<std::array<Index, 3>> triangles;  // indices of nodes
 };
 
@@ -58,8 +58,8 @@ struct SurfaceMesh {
 namespace mesh {
 
 /// A box of the given edge lengths, divided into `cells` = (i, j, k) cells along x, y and z with six tetrahedra each.
-/// All cells in one octant of the box are divided in the same way. Along axes with an even number of cells, both halves
-/// of the box are mirror images.
+/// All cells in one octant of the box are divided in the same way. If the number of cells along an axis is even, the
+/// two halves of the box along this axis are mirror images of each other.
 Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 
 /// A ball with `resolution` elements across the diameter; an odd number is rounded up to even. All boundary nodes lie
@@ -87,9 +87,9 @@ Mesh cylinder(Real radius, Real height, int resolution);
 
 /// A solid of revolution about z. `profile` lists (radius, z) from bottom to top, with ascending z and positive radii;
 /// the outline is linear between these points. The mesh has `resolution` elements across the largest diameter (an odd
-/// number is rounded up to even). The height of a layer along z is about the size of an element. Of kinks of the
-/// outline that are closer together than 0.6 elements, the mesh keeps the sharpest and cuts off the others. An end with
-/// a radius below 0.3 elements closes to a point.
+/// number is rounded up to even). The height of a layer along z is about the size of an element. Where kinks of the
+/// outline are closer together than 0.6 element sizes, the mesh keeps the sharpest kink and cuts off the others. An end
+/// with a radius below 0.3 element sizes closes to a point.
 Mesh lathe(std::span<const std::array<Real, 2>> profile, int resolution);
 
 /// A skittle of the given height, standing on z = 0. It is a lathe() mesh with the outline of a ninepin.
@@ -138,26 +138,27 @@ Mesh table(const TableShape& shape);
 ///   set NAME, any other array a set NAME_N for each number N but 0. An array in which all numbers differ gives none.
 /// - TetGen: node_marker_N and face_marker_N for each marker N but 0 of the files .node and .face.
 /// - Medit: node_ref_N and face_ref_N for each reference N but 0 of the vertices and triangles.
-/// - Abaqus: sets of nodes, sets of elements and surfaces by name. Names of an instance begin with its own name and a
-///   dot. If other objects have the same name, sets of elements are called NAME_elements and surfaces NAME_surface. A
-///   set of nodes is dropped if a set of elements has the same name and exactly these nodes. Internal sets are dropped,
-///   too.
+/// - Abaqus: sets of nodes, sets of elements and surfaces by name. The names of sets of an instance begin with the name
+///   of the instance and a dot. If other objects have the same name, sets of elements are called NAME_elements and
+///   surfaces NAME_surface. A set of nodes is dropped if a set of elements has the same name and exactly these nodes.
+///   Internal sets are dropped, too.
 /// Triangles that are not faces of a tetrahedron are dropped from sets, and a note states how many.
 ///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
 Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Reads the mesh of a rigid body like `read`. From a file without tetrahedra it reads only the surface
-/// (Mesh::triangles), like `read_surface`. Throws SceneError.
+/// Reads the mesh of a rigid body like `read`. If the file has no tetrahedra, reads its triangle surface like
+/// `read_surface`, into Mesh::triangles. Throws SceneError.
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj, .ply (ASCII
-/// and binary) or .stl format. The surface of a tetrahedral mesh is its boundary. Polygons are split into triangles
-/// that share their first corner. `notes` as for `read`. Throws SceneError.
+/// and binary) or .stl format. From a tetrahedral mesh it returns the boundary. Polygons are split into triangles that
+/// share the first corner of the polygon. `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Turns the inverted tetrahedra of a mesh as `read` does, for a mesh that was made in memory. `notes` and errors use
-/// `name` in place of a file name. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary.
+/// `name` in place of a file name. Also sorts the numbers in sets, and gives the faces of sets the orientation of the
+/// boundary.
 /// Throws SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or
 /// if a set has a number that is out of range or a face that no tetrahedron has.
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);

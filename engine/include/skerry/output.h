@@ -32,9 +32,9 @@ public:
     /// Writes into `folder`, which is made if necessary. `name`: first part of the name of each file.
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
     ~VtkWriter();
-    /// Continues an existing series of `frames` frames, `frame_step` seconds apart. Frames of this series whose files
-    /// are in the folder are listed in the .pvd file, and the next frame gets the next number. Must be called before
-    /// the first frame.
+    /// Continues a series of `frames` frames that an earlier run has written to the folder, `frame_step` seconds apart.
+    /// The index lists those of these frames whose files still exist, and the next frame gets the next number. Must be
+    /// called before the first frame.
     void go_on(const World& world, std::size_t frames, Real frame_step);
     /// Sets the names of the materials, in the order in which the materials were added. The default name is "material
     /// NUMBER". Must be called before the first frame.
@@ -52,9 +52,9 @@ private:
 /// Collects frames and writes one self-contained HTML page that plays the run. The page shows bodies coloured by speed,
 /// stress or strain, contacts by stick or slide, joints, ties, cables and springs by force, values under the pointer,
 /// and plots of stage times and energies. It can export pictures and videos. It works offline, because three.js is
-/// inlined. The frames are kept in memory in the compressed form of the page. Positions are accurate to 1/32768 of a
-/// body's extent, and values such as speed or stress are stored as their square roots in 11 bits
-/// (docs/decisions/0016-page-stream.md).
+/// inlined. The frames are kept in memory in the compressed form of the page. Positions are accurate to 1/32768 of the
+/// extent of their body. Values such as speed or stress are stored as square roots with 11 bits, which is finer for
+/// small values (docs/decisions/0016-page-stream.md).
 class PageWriter {
 public:
     /// The page is written to `file` by close().
@@ -89,7 +89,7 @@ struct EnumNames<FilmColor> {
 
 /// Settings of a film in USD format.
 struct FilmSettings {
-    Real frame_step = 1.0 / 60;         // simulated time from one frame number of the film to the next [s]
+    Real frame_step = 1.0 / 60;         // simulated time between two successive frame numbers of the film [s]
     FilmColor color = FilmColor::none;  // quantity that the colours show
     // Value at the upper end of the colour scale, > 0, in the unit of the quantity. The scale begins at zero. If empty,
     // the end is chosen so that 99 % of the values above zero are below it.
@@ -107,10 +107,10 @@ public:
     /// wrong.
     FilmWriter(const std::filesystem::path& file, const FilmSettings& settings);
     ~FilmWriter();
-    /// Throws SceneError if the time is not later than that of the previous frame, or if the frame cannot be written.
-    /// After an error the film is lost.
+    /// Adds the present state as a frame. Throws SceneError if the time is not later than that of the previous frame,
+    /// or if the frame cannot be written. After an error the film is lost.
     void add_frame(const World& world);
-    /// Completes the film. Returns the value at the upper end of the colours.
+    /// Completes the film. Returns the value at the upper end of the colour scale (FilmSettings::color_max).
     Real close();
 
 private:

@@ -14,10 +14,10 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// A local contact problem u = W r + q with the relative velocities u and the impulses (reactions) r. Both have the
-/// components (normal, tangent 1, tangent 2) for each contact. The solution r lies in the friction cone K_mu, the
-/// vector (u_N + mu |u_T|, u_T) lies in the dual cone, and the two vectors are orthogonal. The matrix W is stored in
-/// compressed rows of 3x3 blocks.
+/// A local contact problem u = W r + q with the relative velocities u and the impulses (reactions) r. u and r have the
+/// components (normal N, tangent 1, tangent 2) for each contact; T denotes both tangents. The solution r lies in the
+/// friction cone |r_T| <= mu r_N, the vector (u_N + mu |u_T|, u_T) lies in the dual cone, and these two vectors are
+/// orthogonal. The matrix W is stored in compressed rows of 3x3 blocks.
 struct ContactProblem {
     std::string name;               // name in messages and files
     std::vector<Index> row_offset;  // index of the first block of each row; contacts + 1 entries
@@ -39,20 +39,21 @@ struct ProblemSettings {
     SolverMethod method = SolverMethod::automatic;  // contact solver
     Friction friction = Friction::cone;             // friction law
     Real tolerance = 1e-6;                          // upper bound on ProblemSolution::error
-    Index max_iterations = 100000;                  // largest number of sweeps over a region
+    Index max_iterations = 100000;                  // largest number of sweeps over the contacts of a region
     // Relaxation factor of the sweeps, > 0 and < 2. Only methods that sweep use it.
     Real relaxation = 1;
 };
 
-/// Result of solve_problem(): the impulses, their errors and the effort of the solver.
+/// Result of solve_problem(): the impulses, their errors and the effort of the solver. A region is a group of contacts
+/// that no other contacts influence; each region is solved separately.
 struct ProblemSolution {
     std::vector<Vec3> reaction;  // impulses in the contact frames of the problem [N s]
     Index regions = 0;           // number of regions
-    Index iterations = 0;        // iterations of the region that needed most iterations
-    // Computing time of the solve, without reading and checking the problem [s]. A short solve is repeated, and the
-    // median time is given.
+    Index iterations = 0;        // number of iterations of the region that needed most iterations
+    // Computing time of the solve, without reading and checking the problem [s]. If the solve is short, it is repeated
+    // for a better measurement, and this is the median time.
     double seconds = 0;
-    // Relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|), where e is the natural map residual.
+    // Relative error |e| / max(|q|, |r|, |u|) with the natural map residual e, as in FCLIB and Siconos.
     Real error = 0;
     Real error_absolute = 0;  // norm |e| of the natural map residual e
     Real error_over_q = 0;    // relative error |e| / |q|, with the natural map residual e
@@ -76,18 +77,19 @@ ContactProblem read_problem(const std::filesystem::path& file);
 void write_problem(const ContactProblem& problem, const std::filesystem::path& file,
                    std::span<const Vec3> reaction = {});
 
-/// Returns the subproblem of the given contacts (in ascending order), in which the reactions of all other contacts are
-/// zero. For a complete region this is exact. Throws SceneError.
+/// Returns the problem of the given contacts (in ascending order) alone, as if the reactions of all other contacts were
+/// zero. If the given contacts form a complete region, nothing is neglected, because other contacts do not influence
+/// them. Throws SceneError.
 ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts);
 
 /// Separates the problem into independent regions and solves each region, starting from r = 0. With Friction::pyramid
-/// the errors of the solution, and so `converged`, refer to the friction pyramid: the natural map clamps each
-/// tangential component separately. Throws SceneError if the arrays of the problem have inconsistent sizes, or if a
-/// value or a setting is out of its range.
+/// the errors of the solution, and so `converged`, refer to the friction pyramid instead of the cone: the natural map
+/// clamps each tangential component of r separately. Throws SceneError if the arrays of the problem have inconsistent
+/// sizes, or if a value or a setting is out of its range.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
-/// Errors of given reactions as in FCLIB and Siconos (natural map with rho = 1, docs/methods/errors.md 3), and the
-/// violation of Coulomb's law as an energy.
+/// Errors of given reactions, and their violation of Coulomb's law as an energy. The errors are defined as in FCLIB and
+/// Siconos (natural map with rho = 1, docs/methods/errors.md 3).
 struct ProblemError {
     Real absolute, relative, over_q;  // see error_absolute, error and error_over_q of ProblemSolution
     Real energy_gap;                  // see ProblemSolution::energy_gap [J]
@@ -100,17 +102,17 @@ ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> 
 /// group.
 struct CoupledNodes {
     std::vector<Index> node;    // numbers of the nodes
-    std::vector<Real> inverse;  // inverse mass matrix, stored row by row, symmetric [1/kg]
+    std::vector<Real> inverse;  // inverse mass matrix, one row and column per node, row by row, symmetric [1/kg]
 };
 
 /// Rigid motion of a rigid or implicit body, and the nodes of this body that contacts touch.
 struct RigidPoints {
     std::vector<Index> node;              // numbers of the nodes
     std::vector<Vec3> arm;                // node position relative to the centre of mass [m]
-    Real inverse_mass = 0;                // [1/kg]
-    Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
-    // For a sphere or capsule: its radius [m]. The nodes lie at the centre of the sphere or on the axis of the capsule,
-    // and contact points at this distance from them along the normal. 0 for other shapes.
+    Real inverse_mass = 0;                // inverse mass of the body [1/kg]
+    Mat3 inverse_inertia = Mat3::Zero();  // inverse inertia tensor of the body, in world axes [1/(kg m^2)]
+    // For a sphere or capsule: its radius [m]. The nodes lie at the centre of the sphere or on the axis of the capsule.
+    // Contact points lie at the distance `radius` from the nodes, along the normal. 0 for other shapes.
     Real radius = 0;
     // For a cylinder: position of the contact point relative to the centre of mass [m], indexed by contact (entries of
     // contacts that do not touch this body are not used). Empty for other shapes.
@@ -121,21 +123,22 @@ struct RigidPoints {
 /// motion of the same body.
 struct StrainedPoints {
     std::vector<Index> node;  // numbers of the nodes
-    // velocity change of a node per impulse on a node, for each pair of nodes, row by row, symmetric [1/kg]
+    // Change of the velocity of a node per impulse on a node, for each pair of nodes [1/kg]: a symmetric matrix of 3x3
+    // blocks, row by row.
     std::vector<Mat3> response;
 };
 
-/// Contacts between point masses, in world axes. The relative velocity of contact i is u_i = sum_a weight[a]
-/// velocity[node[a]] + offset_i over the four nodes a of its stencil. An impulse r_i adds weight[a]
-/// inverse_mass[node[a]] r_i to the velocity of node a.
+/// Contacts between point masses, in world axes. A contact i has up to four nodes node[a], its stencil. Its relative
+/// velocity is u_i = sum_a weight[a] velocity[node[a]] + offset_i. An impulse r_i adds weight[a] inverse_mass[node[a]]
+/// r_i to the velocity of node[a].
 struct LumpedContacts {
     // The following arrays have one entry per contact.
     std::vector<std::array<Index, 4>> node;   // nodes of the stencil
     std::vector<std::array<Real, 4>> weight;  // signed weights of these nodes in the relative velocity
     std::vector<Vec3> normal;                 // unit normal of the contact
     // Velocity offset of the contact [m/s]: the sum of the contributions of the gap, of the collider's motion and of
-    // the angular velocity of round bodies, minus a friction correction. This correction is half of the change of the
-    // sliding velocity that the forces of the step cause, without the part of this change along the sliding direction.
+    // the angular velocity of round bodies, minus a friction correction. The forces of the step change the sliding
+    // velocity; the correction is half of the part of this change that is perpendicular to the sliding direction.
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // coefficient of friction mu
     // The following arrays have one entry per node.
@@ -156,17 +159,17 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
-/// Contacts that no impulse can move are omitted. If static friction differs from dynamic friction or depends on the
-/// direction, `impulse` does not solve `problem`, which has only one coefficient per contact. The constraints of
-/// joints, of weld and ball ties, and of nodes on rollers are eliminated from `problem`: its W and q describe the
-/// constrained bodies. The following impulses of the step are taken as given, and their effect is part of q: those of
-/// slide ties, of motors, limits and passive forces of joints, and of cables with friction or a prescribed length.
+/// Contacts that no impulse can move are omitted. If static friction differs from dynamic friction, or friction depends
+/// on the direction, `impulse` does not solve `problem`, which has only one coefficient per contact. The constraints of
+/// joints, of weld and ball ties, and of nodes held along single directions are eliminated from `problem`: its W and q
+/// describe the constrained bodies. Some impulses of the step are taken as given, and their effect is part of q: those
+/// of slide ties, of motors, limits and passive forces of joints, and of cables with friction or a prescribed length.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]
-    Real step_size = 0;          // [s]
-    LumpedContacts lumped;       // the contacts between point masses, in the form that the step used, without
-                                 // joints, ties, rollers and cables
+    Real step_size = 0;          // length of the step [s]
+    LumpedContacts lumped;       // contacts in the form that the step used; joints, ties, cables and nodes held along
+                                 // single directions are left out
     ContactProblem problem;      // the contacts of `lumped` as a problem with general blocks
     std::vector<Vec3> impulse;   // impulses of the step in the contact frames of `problem` [N s]
     std::vector<Index> contact;  // index in World::contacts() of each contact of `problem`

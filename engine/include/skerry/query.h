@@ -25,10 +25,10 @@ struct QueryFilter {
 struct SurfaceHit {
     BodyHandle body{};          // the body; a stale handle if the point is on a collider
     ColliderHandle collider{};  // the collider; a stale handle if the point is on a body
-    // Index of the triangle in World::surface, or in the mesh of a mesh collider. -1 for all other colliders, and for
-    // rigid spheres, capsules and cylinders.
+    // Index of the triangle in World::surface() of the body, or in the mesh of a mesh collider. -1 for all other
+    // colliders, and for bodies that are rigid spheres, capsules or cylinders.
     Index triangle = -1;
-    std::array<Real, 3> barycentric{};  // weights of the triangle's corners at `point`: in [0, 1], with sum 1
+    std::array<Real, 3> barycentric{};  // barycentric coordinates of `point` in the triangle: in [0, 1], with sum 1
     Vec3 point = Vec3::Zero();          // position of the hit in the world [m]
     Vec3 normal = Vec3::Zero();         // outward unit normal of the triangle or the shape
     Real distance = 0;                  // distance from the origin of the ray, or from the queried point [m]

@@ -19,7 +19,7 @@ class Ranks;
 /// Rule that chooses the rank that owns each body. Connected bodies, for example those of a joint, always have one
 /// owner. The rule does not affect the results of steps.
 enum class OwnerMap : std::uint8_t {
-    curve,        // pieces of a Hilbert curve with equal computing cost, so that a rank owns neighbours
+    curve,        // pieces, of equal computing cost, of a Hilbert curve through the bodies: a rank owns neighbours
     round_robin,  // the ranks in turn, body by body
     random,       // random ranks, from RankSettings::seed
 };
@@ -35,25 +35,26 @@ struct EnumNames<OwnerMap> {
 /// Settings of distribute().
 struct RankSettings {
     OwnerMap map = OwnerMap::curve;  // rule that chooses the owners
-    // The bodies get new owners if the computing cost of a rank is more than this factor times the mean cost of the
-    // ranks. Only for OwnerMap::curve.
+    // Upper limit of the computing cost of a rank, divided by the mean cost of the ranks. Above it the bodies get new
+    // owners. Only for OwnerMap::curve.
     double most_imbalance = 1.2;
     std::uint64_t seed = 1;  // seed of OwnerMap::random
 };
 
-/// Divides the world of rank 0 among all ranks, which must all call the function. The worlds of the other ranks are
-/// replaced by parts of this world, with the same handles; only their backend, number of threads and callback of
-/// watch_steps() stay. So the other ranks need not build anything. Afterwards each rank simulates the bodies that it
-/// owns. All ranks must then make the same calls of advance() and gathered(). An error of one rank alone, such as too
-/// little memory, ends all ranks with a message and exit code 1. Calls that change objects of a divided world throw
-/// SceneError. If the world cannot be divided, distribute() throws SceneError on all ranks. Functions that read a
-/// divided world, such as energy() or state_hash(), use only the bodies that this rank holds; read results from
-/// gathered().
+/// Divides the world of rank 0 among all ranks, which must all call the function. Parts of this world, with the same
+/// handles, replace the worlds of the other ranks, so these ranks may pass empty worlds. Only the backend, the number
+/// of threads and the callback of watch_steps() of their worlds stay. If the world cannot be divided, throws SceneError
+/// on all ranks.
+///
+/// Afterwards each rank simulates the bodies that it owns. All ranks must make the same calls of advance() and
+/// gathered(). An error of one rank alone, such as too little memory, ends all ranks with a message and exit code 1.
+/// Calls that change objects of a divided world throw SceneError. Functions that read a divided world, such as energy()
+/// or state_hash(), use only the bodies that this rank holds; read results from gathered().
 void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});
 
-/// Returns the complete world on rank 0 and nothing on the other ranks. All ranks must call the function. The result
-/// equals the world that one process would have computed, with the same handles. If the world is not divided, returns a
-/// copy.
+/// Returns the complete world on rank 0, and an empty optional on the other ranks. All ranks must call the function.
+/// The result equals the world that one process would have computed, with the same handles. If the world is not
+/// divided, returns a copy of it.
 std::optional<World> gathered(const World& world);
 
 }  // namespace skerry

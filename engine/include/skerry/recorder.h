@@ -31,8 +31,9 @@ struct PointProbe {
     std::optional<Vec3> origin{};
 };
 /// Returns a probe for the material point that is now at `point` (world coordinates [m]), interpolated in the
-/// tetrahedron that contains it. If no tetrahedron contains the point, the probe follows the nearest node instead,
-/// provided that this node is not farther away than the mean surface edge. Otherwise throws SceneError.
+/// tetrahedron that contains it. If no tetrahedron contains the point, the probe follows the nearest node instead.
+/// Throws SceneError if this node is farther away than the mean edge length of the surface. The point of a body without
+/// tetrahedra, which is rigid, may be anywhere.
 PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point);
 
 /// Records position, displacement and velocity of the centre of mass of a body.
@@ -149,9 +150,10 @@ public:
     std::span<const Real> row(std::size_t number) const;
 
     /// Writes the rows recorded so far to a CSV file. From now on each new row is written as soon as it is recorded, so
-    /// a run that is killed leaves a file of complete rows. An existing file is replaced as in write_csv. With
-    /// `keep_until` [s] the existing rows up to this time are kept at the beginning; the headings of the file must be
-    /// those of this Recorder. Throws SceneError if the file cannot be written; sample() then does so, too.
+    /// a run that is killed leaves a file of complete rows. An existing file is replaced as in write_csv(). With
+    /// `keep_until` [s], the rows of the existing file up to this time stay at the beginning of the new file; its
+    /// headings must be those of this Recorder. Throws SceneError if the file cannot be written. If a later row cannot
+    /// be written, sample() throws the same error.
     void stream_csv(const std::filesystem::path& file, std::optional<Real> keep_until = {});
     /// Writes a CSV file: headings with units in the first line, then numbers with all digits, "nan" for values that
     /// were not measured. An existing file is replaced completely or not at all. Throws SceneError.

@@ -14,9 +14,9 @@ namespace skerry::mesh {
 /// The surface keeps its shape: new nodes stay on the flat triangles, even if these approximate a curved surface. The
 /// present nodes keep their numbers, and the new nodes are appended; in Mesh::file_number new nodes get numbers after
 /// the largest one. The parts of a tetrahedron have its label and vectors. In sets, the parts of a face or tetrahedron
-/// replace it. A set of nodes gets the midpoints of
-/// - all edges of faces whose three nodes are in the set,
-/// - edges with both ends in the set, if one of the ends belongs to no such face, as on a curve.
+/// replace it. A set of nodes gets two kinds of midpoints, so that it covers the refined faces and curves:
+/// - midpoints of the edges of each face whose three nodes are all in the set,
+/// - midpoints of edges with both ends in the set, unless both ends belong to such faces.
 ///
 /// The running time is proportional to the number of tetrahedra. Throws SceneError if the mesh is invalid, or if the
 /// numbers of the refined mesh exceed 32-bit indices.

@@ -15,14 +15,14 @@ class World;
 
 /// Settings of relax().
 struct RelaxSettings {
-    // Largest `RelaxReport::residual` in equilibrium, > 0 and < 1. It must hold in 10 successive steps, because the
-    // forces in a vibration balance for a moment only.
+    // Upper limit of RelaxReport::residual in equilibrium, > 0 and < 1. It must hold for all bodies in 10 successive
+    // steps, because in a vibration the forces balance for a moment, too.
     Real tolerance = 1e-3;
-    int max_steps = 100000;  // largest number of steps for each load step, >= 1
-    // 1: the loads act in full from the start. More: forces, tractions and accelerations of loads and of
-    // World::set_loads, and prescribed pressures and tensions (of cables and fibres), grow from zero in this number of
-    // equal load steps, each of which ends in equilibrium. Weight and drag act in full from the start. If a load step
-    // finds no equilibrium, it is halved, at most six times.
+    int max_steps = 100000;  // largest number of time steps for each load step, >= 1
+    // Number of load steps, >= 1. With 1, the loads act in full from the start. Otherwise forces, tractions and
+    // accelerations of loads, forces of World::set_loads, prescribed pressures, and tensions of cables and fibres grow
+    // from zero in this number of equal load steps, each of which ends in equilibrium. Weight and drag always act in
+    // full from the start. If a load step finds no equilibrium, it is halved, at most six times.
     int load_steps = 1;
 };
 
@@ -42,16 +42,16 @@ struct RelaxReport {
 };
 
 /// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965; Cundall
-/// 1976): ordinary steps, with contact and friction, after which the velocities of a body are set to zero each time its
-/// kinetic energy has passed a maximum. Joined bodies are stopped together. All bodies start and end without
-/// velocities. Friction or bistable shapes can permit several equilibria; the motion during the steps then decides
-/// which one is found.
+/// 1976). The function takes ordinary steps, with contact and friction. Each time the kinetic energy of a body has
+/// passed a maximum, the velocities of the body are set to zero; joined bodies are stopped together. All bodies start
+/// and end without velocities. Friction or bistable shapes can permit several equilibria; the motion during the steps
+/// then decides which one is found.
 ///
 /// Time does not advance: values over time and prescribed motions stay at their present values, colliders and
 /// attachments do not move, gas does not flow, cables with a prescribed rate are not drawn in, ties do not break, and
-/// the report of the run does not count the steps. Viscous stress is fully relaxed at the end. The world does not
-/// change if the residual stays above the tolerance, for example because a body slides, or if a step cannot be
-/// completed. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
+/// the report of the run does not count the steps. Viscous stress is fully relaxed at the end. If no equilibrium is
+/// found within max_steps, for example because a body slides, or if a step cannot be completed, the world does not
+/// change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
 ///
 /// Calls `go_on`, if given, with the report so far after each step; if it returns false, the relaxation ends and the
 /// world does not change.

@@ -33,16 +33,17 @@ enum class ContactMotion {
     stick,  // the objects press on each other without sliding
     slide,  // the objects press on each other and slide
 };
-/// The condition that limits the length of a step (docs/step_length.md). The limit `speed` is computed before a step.
-/// Inversions, crossings and sudden impacts are found during an attempt at a step, which is then discarded. After an
-/// inversion or a crossing, each step is at most a fifth longer than the last; after a sudden impact, at most a half
-/// longer.
+/// The condition that limits the length of a step (docs/step_length.md). An attempt at a step is discarded if it shows
+/// an inversion, a crossing, a failure of Newton's method, or a sudden impact that deforms an element too fast (counted
+/// as `speed`). If the attempt is repeated with a shorter step, later steps become longer only gradually: by at most a
+/// half per step after a sudden impact, and by at most a fifth per step after the other three.
 enum class StepLimit {
     setting,  // Settings::step_size
     rest,     // the stable step of a body in its rest shape
     strain,   // deformation shortened the stable step of a body, or Newton's method failed for a longer step
     // In a longer step, the deformation gradient of an element would change by more than 0.2 (Frobenius norm), or a
-    // body with a joint or tie would rotate by more than 0.1 rad.
+    // body with a joint or tie would rotate by more than 0.1 rad. This limit is usually known before the step, from the
+    // speed of deformation in the previous step.
     speed,
     inversion,  // an element would turn inside out
     crossing,   // surfaces would pass through each other
@@ -64,15 +65,15 @@ struct EnumNames<StepLimit> {
 /// the last step before the bodies fell asleep. Its impulse is scaled to the present `seconds`, so that force() returns
 /// the contact force of that step.
 struct Contact {
-    // Body of the contact point (point on a triangle) or of the first edge (edge on an edge). A stale handle if this
-    // point or edge belongs to a mesh collider.
+    // Body of the point, if a point touches a triangle, or of the first edge, if two edges touch. A stale handle if
+    // this point or edge belongs to a mesh collider.
     BodyHandle first{};
     BodyHandle second{};        // the other body; a stale handle if the partner is a collider
     ColliderHandle collider{};  // the collider; a stale handle if both partners are bodies
-    // Number of each node within its body. node[a] belongs to `first` if weight[a] > 0 and to `second` if weight[a] <
-    // 0. node[a] is -1 if weight[a] is 0.
+    // Numbers of the nodes of the touching features, within their bodies. node[a] belongs to `first` if weight[a] > 0
+    // and to `second` if weight[a] < 0. node[a] is -1 if weight[a] is 0.
     std::array<Index, 4> node{};
-    // Signed weight of each node in the relative velocity of the contact (docs/methods/contact.md 1.1).
+    // Signed weight of each of these nodes in the relative velocity of the contact (docs/methods/contact.md 1.1).
     std::array<Real, 4> weight{};
     Vec3 point = Vec3::Zero();   // contact point on the second body or the collider [m]
     Vec3 normal = Vec3::Zero();  // unit normal, pointing towards the first body
@@ -91,7 +92,9 @@ struct Contact {
     // the integrator is leapfrog, or only implicit bodies (and colliders) touch.
     Real seconds = 0;
     ContactMotion motion = ContactMotion::open;  // motion after the step
-    Index region = -1;  // region number; -1 if no node of the contact can move, or if its bodies sleep
+    // Number of the region of the contact: a group of contacts that share moving nodes or bodies and are solved
+    // together. -1 if no node of the contact can move, or if its bodies sleep.
+    Index region = -1;
 
     /// Mean force on the first body during the step [N].
     Vec3 force() const { return seconds > 0 ? Vec3(impulse / seconds) : Vec3(Vec3::Zero()); }
@@ -113,7 +116,8 @@ struct Energy {
     Real dissipated = 0;  // energy lost since the start; see RunCounters::dissipated [J]
 };
 
-/// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
+/// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported. A region is a
+/// group of contacts that share moving nodes or bodies; the solver solves its contacts together.
 class StepReport {
 public:
     /// False if a step could not be completed, or if the call was asked to stop.
@@ -130,8 +134,9 @@ public:
     Index node = -1;                     // number of the node within the body, if a node caused the failure
     // Number of the element within the body, if an element caused the failure; `node` is one of its corners
     Index element = -1;
-    // Measured value that caused the failure. too_fast: norm of the change of the element's deformation gradient.
-    // too_far: rounding error of positions over mean edge length. too_stiff: stable step [s].
+    // Measured value that caused the failure, for three values of `status`. too_fast: norm of the change of the
+    // element's deformation gradient. too_far: rounding error of positions divided by the mean edge length. too_stiff:
+    // stable step [s].
     Real value = 0;
     Real step_size = 0;  // length of the last step [s]
     int steps = 0;       // number of committed steps
@@ -149,13 +154,13 @@ public:
     Index contacts = 0;          // number of contacts of the last step, without contacts between sleeping bodies
     Index regions = 0;           // number of regions of the last step
     Index largest_region = 0;    // number of contacts of the largest region of the last step
-    Index unconverged = 0;       // number of regions in which the solver did not converge, summed over the steps
+    Index unconverged = 0;       // number of regions for which the solver did not converge, summed over the steps
     Real worst_error = 0;        // largest relative solver error of a region in any step
     Index worst_region = 0;      // number of contacts of the region with worst_error
     Real max_penetration = 0;    // largest overlap of surfaces in any step [m]
     Real max_gap_violation = 0;  // largest -Contact::gap in any step [m]
-    // Largest overlap, in any step, between surfaces that no contact can move: held nodes inside a collider or inside
-    // another held body [m].
+    // Largest overlap of held nodes with a collider or with another held body, in any step [m]. Contacts cannot reduce
+    // such overlaps.
     Real held_penetration = 0;
     Index inverted = 0;          // number of elements that turned inside out, including those in discarded attempts
     BodyHandle inverted_body{};  // body of the first element that turned inside out
@@ -168,10 +173,11 @@ public:
     std::string body_name;  // name of `body`; empty if there is none
 };
 
-/// Statistics of the steps whose length one particular cause has limited, since the world was made.
+/// Statistics of the steps, since the world was made, whose length was limited by one cause. A cause is a condition
+/// together with the body that meets it.
 struct StepLimitReport {
-    StepLimit limit = StepLimit::rest;  // the cause
-    BodyHandle body{};        // a stale handle if the cause is not a body (for example a setting or a crossing)
+    StepLimit limit = StepLimit::rest;  // the condition
+    BodyHandle body{};        // the body; a stale handle if the condition belongs to no body (setting, crossing)
     std::string body_name;    // name of the body when it limited a step
     std::uint64_t steps = 0;  // number of steps that this cause limited
     std::uint64_t tries = 0;  // number of attempts at a step that were discarded for this cause
@@ -180,12 +186,12 @@ struct StepLimitReport {
 
 /// The reason why BodyDynamics::automatic made a body explicit or implicit.
 enum class DynamicsReason : std::uint8_t {
-    given,         // no choice was made, because the caller gave the kind
+    given,         // `automatic` made no choice, because the user set another kind
     self_contact,  // explicit, because implicit bodies have no self-contact
     losses,        // explicit, because a material of the body sets a loss factor above 0
     plasticity,    // explicit, because a material of the body yields
     strain,        // explicit, because the expected strain is above 2 %, the limit for implicit bodies
-    cost,          // explicit or implicit by predicted cost: implicit if this costs less than half as much
+    cost,          // implicit if the predicted cost as implicit body is below half of that as explicit body
 };
 template <>
 struct EnumNames<DynamicsReason> {
@@ -199,22 +205,25 @@ struct EnumNames<DynamicsReason> {
     }};
 };
 
-/// The estimate behind the choice of BodyDynamics::automatic (docs/methods/implicit_bodies.md 6).
+/// The estimate behind the choice of BodyDynamics::automatic (docs/methods/implicit_bodies.md 6). Steps, costs and
+/// `damped_above` are estimated only if `reason` is `cost`, and are otherwise 0.
 struct DynamicsEstimate {
     DynamicsReason reason = DynamicsReason::given;  // why this kind was chosen
     Real explicit_step = 0;                         // step length of the world if the body is explicit [s]
     Real implicit_step = 0;                         // step length of the world if the body is implicit [s]
-    // Step length for the deformation of the body if it is implicit [s]: the larger of the member implicit_step and
-    // Settings::implicit_step.
+    // Step length in which the deformation of the body is computed if it is implicit [s]: the larger of the member
+    // implicit_step and Settings::implicit_step.
     Real deforming_step = 0;
-    // Predicted computing time per simulated second on one core [s] if the body is explicit or implicit. It includes
-    // the elements of all bodies, and the contacts and solves of this body.
+    // Predicted computing time per simulated second on one core [s]: explicit_cost if the body is explicit,
+    // implicit_cost if it is implicit. They include the elements of all bodies, and the contacts and solves of this
+    // body.
     Real explicit_cost = 0, implicit_cost = 0;
-    // Estimate of the largest strain: the one caused by the weight, or by an impact at the speed sqrt(u^2 + 2 g H),
-    // which the body reaches from its initial speed u in a fall from the height H of ten times its size.
+    // Estimate of the largest strain: the larger of the strains by the weight of the body and by an impact. The assumed
+    // impact speed is sqrt(u^2 + 2 g H), with the initial speed u of the body, the magnitude g of gravity, and a fall
+    // from the height H of ten times the size of the body.
     Real strain = 0;
-    // Frequency above which steps of the length deforming_step damp vibrations instead of resolving them [Hz]: 1/(4 pi
-    // deforming_step), at which the angular frequency times the step length is 1/2. 0: steps damp no vibrations.
+    // Frequency above which the steps of an implicit body damp vibrations instead of resolving them [Hz]: 1/(4 pi
+    // deforming_step). At this frequency, angular frequency times deforming_step is 1/2. 0: steps damp no vibrations.
     Real damped_above = 0;
 };
 
@@ -258,7 +267,7 @@ struct StartMove {
 };
 
 /// A deformable body whose surface was found to cross itself. Surfaces are checked every 256 steps (every 128 steps if
-/// there are clusters) and by World::report.
+/// there are clusters, see WorldReport::clusters) and by World::report.
 struct SelfCrossing {
     BodyHandle body{};  // the body whose surface crosses itself
     std::string name;   // name of the body when the crossing was found
@@ -266,8 +275,8 @@ struct SelfCrossing {
     bool self_contact = false;
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
     // Number of places where an edge passes through a triangle. last_places: in the last check of this surface, even if
-    // it found none. most_places: in the check with most places. Places do not count if edge and triangle are at most
-    // one mean edge length apart in the rest shape, because crushed elements cause such places.
+    // it found none. most_places: in the check with most places. A place is left out if its edge and triangle are at
+    // most one mean edge length apart in the rest shape, because crushed elements cause such places.
     Index last_places = 0, most_places = 0;
 
     /// Returns a text such as "the surface of body 'knot' crosses itself in up to 312 places, first found at 0.41 s and
@@ -275,13 +284,15 @@ struct SelfCrossing {
     std::string message() const;
 };
 
-/// Sums and maxima over all steps since the world was made.
+/// Sums and maxima over all steps since the world was made. A region is a group of contacts that are solved together. A
+/// sweep is one pass of the solver over the contacts of a region.
 struct RunCounters {
     std::uint64_t steps = 0;  // number of steps
     // Number of steps with so little work that they run on one thread, because waking other threads would take longer.
     std::uint64_t inline_steps = 0;
     std::uint64_t resting_steps = 0;  // number of steps in which all bodies are asleep and nothing moves; no stage runs
-    // Number of bodies whose elements are skipped because the bodies fly freely and undeformed, summed over all steps.
+    // Number of bodies whose element forces are not computed, because the bodies fly freely and undeformed; summed over
+    // all steps.
     std::uint64_t unstrained = 0;
     std::uint64_t shortened = 0;  // number of attempts at a step that were repeated with a shorter step
     // number of attempts that were repeated because surfaces crossed; the repeated attempt treats crossings as contacts
@@ -297,12 +308,12 @@ struct RunCounters {
     std::uint64_t closed_form = 0;    // number of regions of one contact, solved in closed form
     std::uint64_t separating = 0;     // number of regions whose contacts all separate, so that no impulse acts
     std::uint64_t frictionless = 0;   // number of regions without friction, solved with one unknown per contact
-    std::uint64_t in_lanes = 0;       // number of regions solved in parallel in the lanes of vector instructions
+    std::uint64_t in_lanes = 0;       // number of regions solved at once with others, one in each lane of SIMD vectors
     std::uint64_t contact_steps = 0;  // sum of (contacts times sweeps) over all regions that needed sweeps
     std::uint64_t swept = 0;          // number of regions that needed sweeps
-    // number of steps that Newton's method solved, summed over the implicit bodies at large strain
+    // number of steps for which Newton's method was used, summed over the implicit bodies (only at large strain)
     std::uint64_t large_strain_steps = 0;
-    // Number of Newton iterations, and of factorisations of the tangent stiffness, for implicit bodies at large strain.
+    // Number of Newton iterations in these steps, and number of factorisations of the tangent stiffness.
     std::uint64_t newton_steps = 0, tangent_factors = 0;
     // Largest number of contacts and of regions in any step, and of contacts in any region.
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
@@ -317,8 +328,8 @@ struct RunCounters {
     Real start_penetration = 0, start_gap_violation = 0;
 };
 
-/// If the contact impulses of a region had a larger relative error than this, the results of the run are not to be
-/// trusted.
+/// Upper limit of the relative error of the contact impulses of a region. If a region exceeds it in any step, the
+/// results of the run are not to be trusted.
 inline constexpr Real largest_trusted_error = 0.5;
 
 /// The counters of the run, and measures of the present state. To compute these measures, World::report() passes over
@@ -334,7 +345,8 @@ struct WorldReport : RunCounters {
     // Number of clusters, number of nodes in clusters, and number of implicit elements in clusters. A cluster is a
     // group of nodes coupled by implicit elements. These elements do not shorten the step (docs/methods/clusters.md).
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
-    // Number of tetrahedra in clusters that have an inversion barrier (docs/methods/elasticity.md 7.7).
+    // Number of tetrahedra in clusters that have an inversion barrier, an additional stiffness that keeps small
+    // tetrahedra from turning inside out (docs/methods/elasticity.md 7.7).
     std::size_t guards = 0;
     // choices between explicit and implicit for bodies added as `automatic`, in the order added
     std::vector<DynamicsChoice> dynamics_choices;
@@ -348,30 +360,29 @@ struct WorldReport : RunCounters {
     std::vector<StageReport> stages;           // stages in the order of the step
     // Averages: contacts per step, regions per step, and sweeps per solved region.
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;
-    // Number of searches for pairs of near bodies since the start, number of searches for pairs of near features
-    // (nodes, edges, triangles) since the start, and number of feature pairs that the last searches found.
+    // Searches since the start: broad_searches for pairs of near bodies, pair_searches for pairs of near features
+    // (nodes, edges, triangles). candidates: number of feature pairs that the last searches found.
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    // Sums over the run:
-    // - tests whether a fast candidate crosses; a candidate is a node and a triangle, two edges, or a feature and a
-    //   collider;
-    // - crossings found in discarded attempts;
-    // - crossings that no attempt at a step could prevent.
+    // Sums over the run. crossing_tests: tests of near features (a node and a triangle, two edges, or a feature and a
+    // collider) that move fast enough to cross in a step. crossings_found: crossings found in discarded attempts at a
+    // step. crossed: crossings that no attempt at a step could prevent.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
-    // Largest overlap, in any step, between surfaces that no contact can move [m]. held_body: name of the body whose
-    // held nodes overlap. held_in: name of the collider or body that they overlap. Both are empty if one of the objects
-    // was removed.
+    // Largest overlap, in any step, of held nodes with a collider or another held body, which no contact can reduce
+    // [m]. held_body: name of the body with these nodes. held_in: name of the collider or body that they overlap. These
+    // names are empty if one of the two objects was removed.
     Real held_penetration = 0;
     std::string held_body, held_in;        // see held_penetration
     Energy energy;                         // present energies of the world
     Vec3 momentum = Vec3::Zero();          // momentum of all bodies [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
-    // Errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not explain.
-    // These balances are checked every 256 steps (every 128 steps if there are clusters) and now; the largest error
-    // counts. A relative error is the absolute error divided by all energy or momentum that could be exchanged.
+    // Largest errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not
+    // explain. The balances are checked every 256 steps (every 128 steps if there are clusters) and now. A relative
+    // error is the absolute error divided by the energy or momentum that is present or was exchanged (sum of
+    // magnitudes).
     Real energy_error = 0, energy_error_share = 0;  // absolute error [J]; relative error [1]
-    // Absolute error [kg m/s] and relative error [1]. Both are NaN if a held body is damped, or if a held node belongs
-    // to an implicit element. The damping, or the inertia of the element, then absorbs momentum. World::forces reports
-    // the momentum that the element absorbs.
+    // Absolute error [kg m/s] and relative error [1] of the momentum. They are NaN if a held body is damped, or if a
+    // held node belongs to an implicit element: the damping, or the inertia of the element, then absorbs momentum that
+    // the balance does not include. World::forces reports the momentum that the element absorbs.
     Real momentum_error = 0, momentum_error_share = 0;
     // Number of steps since the balances were restarted by the last change from outside, such as an added body.
     std::uint64_t balanced_steps = 0;
@@ -381,16 +392,16 @@ struct WorldReport : RunCounters {
     Index worst_volume_element = -1;
     Index near_inversion = 0;  // number of tetrahedra with det F (volume ratio) below 0.1
     // Number of smoothed elements (unions of parts of tetrahedra around an edge or a node) with less than a fifth of
-    // their rest volume. Tetrahedra around an edge can stay folded against each other although none of them is
-    // inverted. `folded_body` is the first body with such elements, `folded_element` a tetrahedron of the most
-    // compressed element of this body.
+    // their rest volume. They reveal tetrahedra that are folded against each other although none of them is inverted.
+    // `folded_body` is the first body with such elements. `folded_element` is a tetrahedron of the most compressed
+    // element of this body.
     Index folded = 0;
     std::string folded_body;    // see folded
     Index folded_element = -1;  // see folded
     Index inverted = 0;         // number of tetrahedra with det F (volume ratio) below 0
     // Angle by which the fastest rotating collider turns during the longest step allowed now [rad]. Contacts assume
-    // that the collider's surface moves straight within a step. This causes a position error of angle^2/2 times the
-    // distance from the axis of rotation.
+    // that each point of the collider moves along a straight line within a step. This assumption causes a position
+    // error of angle^2/2 times the distance of the point from the axis of rotation.
     Real collider_turn = 0;
     std::string turning_collider;  // name of the collider of collider_turn
 

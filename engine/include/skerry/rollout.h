@@ -16,22 +16,22 @@
 namespace skerry {
 
 /// Moves a collider or an attachment, so that it reaches a pose at the end of the interval (World::move_to). Values per
-/// interval (RolloutControl::values): position [m] and rotation vector [rad].
+/// interval (RolloutControl::values), six: position [m] and rotation vector [rad].
 struct PoseControl {
     std::variant<ColliderHandle, AttachmentHandle> object{};  // the moved object
 };
-/// Moves a collider or an attachment at constant velocities (World::set_velocity). Values per interval: velocity [m/s]
-/// and angular velocity [rad/s].
+/// Moves a collider or an attachment at constant velocities (World::set_velocity). Values per interval, six: velocity
+/// [m/s] and angular velocity [rad/s].
 struct VelocityControl {
     std::variant<ColliderHandle, AttachmentHandle> object{};  // the moved object
 };
 /// Sets the target speed of the motor of a hinge or slider. The joint must have a motor, which keeps its `strength`.
-/// Value per interval: the speed [rad/s or m/s].
+/// One value per interval: the speed [rad/s or m/s].
 struct MotorSpeedControl {
     JointHandle joint{};  // joint with the motor
 };
 /// Sets the target coordinate of the motor of a hinge or slider. The joint must have a motor, which keeps its
-/// `strength` and `fastest`. Value per interval: the coordinate [rad or m].
+/// `strength` and `fastest`. One value per interval: the coordinate [rad or m].
 struct MotorPositionControl {
     JointHandle joint{};  // joint with the motor
 };
@@ -39,29 +39,29 @@ struct MotorPositionControl {
 struct NodeForceControl {
     BodyHandle body{};  // body of the nodes
 };
-/// Sets an external force on a body, in place of the forces of World::set_loads(). It is distributed over the nodes in
-/// proportion to their masses, so that it acts at the centre of mass. Values per interval: three [N].
+/// Sets an external force on a body, in place of the forces of World::set_loads(). The force is distributed over the
+/// nodes in proportion to their masses, so that it acts at the centre of mass. Values per interval: three [N].
 struct BodyForceControl {
     BodyHandle body{};  // body on which the force acts
 };
 /// Sets the acceleration of gravity. Values per interval: three [m/s^2].
 struct GravityControl {};
-/// Sets the value that the settings of an object give as a TimeTable. Value per interval: tension [N], length [m] or
-/// rate [m/s] of a cable, whichever is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity;
-/// pressure of the reservoir of a pipe [Pa]; rest length of a spring [m]; scale of a load; active tension of fibres
-/// [Pa].
+/// Sets a value that the settings of an object give as a TimeTable. One value per interval: for a cable the prescribed
+/// tension [N], length [m] or rate [m/s]; for a cavity the pressure [Pa], the inflow of gas [kg/s] or the volume of
+/// liquid [m^3]; for a pipe the pressure of its reservoir [Pa]; for a spring the rest length [m]; for a load the scale
+/// [1]; for fibres the active tension [Pa].
 struct ValueControl {
     // object whose value is set
     std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle, FibreHandle> object{};
 };
 
-/// One controlled quantity. Two controls must not name one object. The values of an interval are set at its start.
+/// One controlled quantity. Each object may have one control only. The values of an interval are set at its start.
 struct RolloutControl {
     std::variant<PoseControl, VelocityControl, MotorSpeedControl, MotorPositionControl, NodeForceControl,
                  BodyForceControl, GravityControl, ValueControl>
         what;  // the controlled object and quantity
-    // The values of the control for each interval of the first world, then for each interval of the second world, and
-    // so on. If the values of only one world are given, they apply to all worlds. The values are not copied and must
+    // Values of the control in the order of worlds, then intervals: as many values per interval as the kind of control
+    // states. If the values of only one world are given, they apply to all worlds. The values are not copied and must
     // exist until rollout() returns.
     std::span<const Real> values;
 };
@@ -80,20 +80,20 @@ struct RolloutSettings {
     std::vector<RecordedProbe> record{};     // quantities that are recorded at the end of each interval
     int threads = 0;                         // number of threads of the rollout; 0: the number of cores
     bool keep_worlds = false;                // true: the result contains the worlds at the end of the rollout
-    // If given, called before the first interval with each copy and the number of its world in the argument `worlds`,
-    // for example to change materials or poses. Several threads call it at once. It must not remove objects that
-    // controls or probes name. If it throws, the rollout ends and rethrows the exception of the world with the lowest
-    // number.
+    // If given, called once for each copy before its first interval, for example to change materials or poses.
+    // `number`: index of the copied world in the argument `worlds` of rollout(). Several threads call the function at
+    // once. It must not remove objects that controls or probes name. If it throws, the rollout ends and rethrows the
+    // exception of the world with the lowest number.
     std::function<void(World& copy, std::size_t number)> prepare{};
     // If given, called about every 20 ms on the thread that called rollout(). If it returns false or throws, all worlds
     // stop before their next step, and rollout() returns or rethrows the exception.
     std::function<bool(const RolloutProgress&)> go_on{};
 };
 
-/// Values of one probe, with the columns that a Recorder gives it.
+/// Values of one probe. They have the columns that a Recorder makes for this probe.
 struct RolloutSeries {
     std::string name;                   // name of the probe
-    std::vector<SeriesColumn> columns;  // without the time
+    std::vector<SeriesColumn> columns;  // the columns of the probe, without a column for the time
     // values by world, then interval, then column; NaN in intervals that were not completed
     std::vector<Real> values;
 };
@@ -125,15 +125,15 @@ struct RolloutResult {
 /// the call no other thread may use them, and go_on may only read them. A world may be listed several times. All must
 /// be clones of one world, so that the handles of controls and probes are valid in each of them.
 ///
-/// The results are bitwise those of a loop that clones each world, applies the controls of an interval, calls
-/// advance(dt) and samples a Recorder, on any number of threads. A world whose step is refused stops, and the others
-/// continue. If there are fewer worlds than threads, each world gets an equal number of threads.
+/// Each copy, in each interval, applies the controls, calls advance(dt) and samples a Recorder. The results are bitwise
+/// those of such a loop over single worlds, on any number of threads. If a step of a copy is refused, this copy stops
+/// and the others continue. If there are fewer worlds than threads, each world gets an equal number of threads.
 ///
 /// Memory: each thread of the rollout has one copy of a world at a time, and the results need 8 bytes per value. With
 /// keep_worlds all copies remain; each keeps the number of threads with which it was advanced. To continue a rollout,
-/// keep the worlds and pass them to the next call. To start again from the same states, pass the same worlds again.
-/// There is no need to keep copies and reset them: World::reset takes as long as a new copy, about 0.4 ms for a world
-/// of 4,000 tetrahedra.
+/// keep the worlds and pass them to the next call. To start again from the same states, pass the original worlds again.
+/// Resetting copies instead saves no time: World::reset takes as long as a new copy, about 0.4 ms for a world of 4,000
+/// tetrahedra.
 ///
 /// Throws SceneError before any world runs if a setting, a handle or a value is invalid.
 RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings);

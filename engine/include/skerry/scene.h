@@ -26,15 +26,15 @@ struct SceneOverrides {
     std::optional<StartOverlaps> start_overlaps{};    // Settings::start_overlaps
     std::optional<Real> step_size{};                  // Settings::step_size [s]
     std::optional<ElementKind> element{};  // element kind for all bodies, in place of the kinds in the scene file
-    // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied in the given order, and before the
-    // other members of this struct, to the scene file itself, not to the files that it includes. PLACE has the form
-    // that error messages use for a place in the file. VALUE is read as JSON; if it is not valid JSON, it is taken as a
-    // text.
+    // Assignments PLACE=VALUE to keys of the scene file, such as bodies[0].position=[0,0,1]. They change the scene file
+    // itself, not the files that it includes, in the given order. The other members of this struct are applied later.
+    // PLACE has the form that error messages use for a place in the file. VALUE is JSON; if it is not valid JSON, it is
+    // taken as a text.
     std::vector<std::string> assignments{};
     std::string fill_python{};  // Python interpreter for filling surfaces; see mesh::FillSettings::python
 };
 
-/// Some nodes of a body, such as the feet of a table. A run reports the contacts of these nodes.
+/// Some nodes of a body, such as the feet of a table. The program `skerry run` reports the contacts of these nodes.
 struct Probe {
     std::string name;          // name in the report
     BodyHandle body;           // body of the nodes
@@ -51,7 +51,7 @@ struct Scene {
     World world;                          // the world at the time 0
     std::vector<Probe> probes;            // node sets whose contacts the run reports
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
-    // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
+    // Time between two samples of `probes`, and between two rows of a Recorder with the probes `recorded` [s].
     Real probe_step = 1.0 / 60;
     std::vector<Slider> sliders{};  // values that a user of the live view can change
     // corrections and warnings from reading the file, for example about filled surfaces
@@ -59,14 +59,14 @@ struct Scene {
 };
 
 /// Reads a scene file and builds its world. Relative paths of mesh files start at the folder of the scene file. Throws
-/// SceneError for any invalid input; for an unknown key the message names the nearest known key. `progress`: called
-/// many times a second while a surface is filled, with a text on the current activity. If it throws, load_scene() ends
-/// with this exception.
+/// SceneError for any invalid input; for an unknown key the message names the known key with the most similar name.
+/// `progress`: called many times a second while a surface is filled with tetrahedra, with a text on the current
+/// activity. If it throws, load_scene() ends with this exception.
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {},
                  const std::function<void(const std::string&)>& progress = {});
 
-/// Builds a scene from the text of a scene file. Relative paths start at `folder`. Errors name "scene" as the file.
-/// `progress`: as for load_scene.
+/// Builds a scene from the text of a scene file. Relative paths start at `folder`. Errors give "scene" as the name of
+/// the file. `progress`: see load_scene().
 Scene load_scene_text(const std::string& json, const std::filesystem::path& folder,
                       const SceneOverrides& overrides = {},
                       const std::function<void(const std::string&)>& progress = {});

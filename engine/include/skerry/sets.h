@@ -25,8 +25,8 @@ public:
     explicit Sets(World& world) : world_(&world) {}
 
     std::vector<std::string> names(BodyHandle body) const;  // in alphabetical order
-    /// Nodes, faces and tetrahedra that a set lists, without those that they imply (see nodes()). The reference is
-    /// valid until sets or bodies change.
+    /// Nodes, faces and tetrahedra that a set lists. Items that follow from other lists, such as the nodes of listed
+    /// faces, are not included; for these see nodes(). The reference is valid until sets or bodies change.
     const MeshSet& get(BodyHandle body, const std::string& name) const;
     /// Adds a set. Sorts the numbers and drops repeated ones. Throws SceneError if the body already has a set of this
     /// name, if the set or its name is empty, or if a number is out of range.
@@ -34,12 +34,12 @@ public:
     /// Removes a set. Objects that were made from it, such as attachments and loads, do not change.
     void remove(BodyHandle body, const std::string& name);
 
-    /// Numbers of the nodes, faces and tetrahedra of a set, as mesh::nodes_of, faces_of and tetrahedra_of find them.
-    /// Throws SceneError if there are none.
+    /// Numbers of all nodes of a set, also those of its faces and tetrahedra (mesh::nodes_of). Throws SceneError if
+    /// there are none.
     std::vector<Index> nodes(BodyHandle body, const std::string& name) const;
-    /// See nodes().
+    /// Faces of a set, each by the numbers of its nodes (mesh::faces_of). Throws SceneError if there are none.
     std::vector<std::array<Index, 3>> faces(BodyHandle body, const std::string& name) const;
-    /// See nodes().
+    /// Numbers of the tetrahedra of a set (mesh::tetrahedra_of). Throws SceneError if there are none.
     std::vector<Index> tetrahedra(BodyHandle body, const std::string& name) const;
 
     /// Labels of the tetrahedra of a body (Mesh::label); empty if its mesh has none.

@@ -22,18 +22,18 @@
 namespace skerry {
 
 inline constexpr Real default_loss_factor = 0.05;  // loss factor of explicit bodies whose material gives none
-inline constexpr Real largest_loss_factor = 0.3;   // upper bound of MaterialSettings::loss_factor
-inline constexpr Real largest_bulk_viscosity = 1;  // upper bound of MaterialSettings::bulk_viscosity
+inline constexpr Real largest_loss_factor = 0.3;   // upper limit of MaterialSettings::loss_factor
+inline constexpr Real largest_bulk_viscosity = 1;  // upper limit of MaterialSettings::bulk_viscosity
 
 /// Term of the law `ogden` (Ogden 1972; docs/methods/elasticity.md 2.5).
 struct StretchTerm {
-    Real share = 0;     // share of the shear modulus, from 0 (the term is not used) to 1
-    Real exponent = 2;  // exponent of the stretches; its magnitude is from 0.1 to 100
+    Real share = 0;     // share of the term in the shear modulus, from 0 (the term is not used) to 1
+    Real exponent = 2;  // exponent of the principal stretches; its magnitude is from 0.1 to 100
 
     bool operator==(const StretchTerm&) const = default;
 };
 
-/// Plasticity of von Mises with isotropic hardening, of the law `hencky` (docs/methods/elasticity.md 8).
+/// Plasticity of von Mises with isotropic hardening, for the material law `hencky` (docs/methods/elasticity.md 8).
 struct Plasticity {
     Real yield_stress = 0;  // von Mises stress at which the material yields first, > 0 [Pa]
     Real hardening = 0;     // increase of the yield stress per equivalent plastic strain, >= 0 [Pa]
@@ -52,14 +52,14 @@ struct MaterialSettings {
     std::optional<Real> dynamic_friction{};  // friction coefficient of sliding contacts, >= 0
     // Rebound speed over impact speed of a surface point (not of the whole body), from 0 to 1.
     Real restitution = 0;
-    // Decay rate of velocities relative to the rigid motion of the body, >= 0 [1/s]. Momentum is conserved. In a body
-    // with held nodes, velocities relative to the world decay.
+    // Decay rate of velocities, >= 0 [1/s]. In a free body, velocities relative to its rigid motion decay, so momentum
+    // is conserved. In a body with held nodes, velocities relative to the world decay.
     Real damping = 0;
     // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body. In
     // each period a free vibration loses about the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05
     // to 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001. A positive value makes the stable step a few per
     // cent shorter (docs/methods/elasticity.md 6). If not given, explicit bodies have default_loss_factor. Implicit
-    // bodies have no such losses: a value above 0 is refused for them, and `automatic` then makes a body explicit.
+    // bodies have no such losses. A value above 0 is refused for them, and makes an `automatic` body explicit.
     std::optional<Real> loss_factor{};  // from 0 to 0.3
     // Damping ratio of volume changes of an element, at the highest natural frequency of this element. Implicit bodies
     // do not use this value.
@@ -67,10 +67,11 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;  // elastic law
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
-    // Elastic constants of the law `orthotropic`. With this law, losses and estimates use an isotropic material whose
-    // stiffness exceeds the orthotropic one for no strain. Its constants replace young_modulus and poisson_ratio.
+    // Elastic constants of the law `orthotropic`. With this law, losses and estimates use an isotropic material that is
+    // at most as stiff as the orthotropic one for every strain. Constants of this isotropic material replace
+    // young_modulus and poisson_ratio.
     OrthotropicModuli orthotropic{};
-    std::optional<Plasticity> plasticity{};  // only with the law `hencky`; explicit bodies alone yield
+    std::optional<Plasticity> plasticity{};  // only with the law `hencky`, and only for explicit bodies
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.
@@ -83,10 +84,11 @@ enum class BodyDynamics : std::uint8_t {
     // bodies. At strains up to about 2 %, elasticity is linear in the frame that moves with the body. At larger strains
     // it follows the material law, and Newton's method solves each step (docs/methods/implicit_bodies.md).
     implicit_elastic,
-    // The body becomes implicit if this more than halves the predicted cost and the expected strain is at most 2 %,
-    // otherwise explicit. The choice is made when the body is added, for the step length that the bodies added before
-    // it allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later requires
-    // short steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
+    // The body becomes implicit if its predicted cost is then less than half of that as explicit body, and the expected
+    // strain is at most 2 %; otherwise it becomes explicit. The choice is made when the body is added, for the step
+    // length that the bodies added before it allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a
+    // body added later requires much shorter steps, the costs are compared again. An implicit body can then become
+    // explicit, as by World::set_dynamics().
     automatic,
 };
 template <>
@@ -110,11 +112,12 @@ struct BodySettings {
     // Materials of the tetrahedra of named sets (Mesh::sets). They take precedence over `materials`. A tetrahedron must
     // not be in two of these sets.
     std::map<std::string, MaterialHandle> materials_of_sets{};
-    Vec3 position = Vec3::Zero();          // [m]
-    Vec3 rotation = Vec3::Zero();          // rotation axis times angle [rad]
+    Vec3 position = Vec3::Zero();          // initial position of the origin of the mesh in the world [m]
+    Vec3 rotation = Vec3::Zero();          // initial rotation: axis times angle [rad]
     Vec3 velocity = Vec3::Zero();          // initial velocity of the centre of mass [m/s]
     Vec3 angular_velocity = Vec3::Zero();  // initial angular velocity about the centre of mass [rad/s]
-    // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
+    // Contacts act where surfaces are closer than the contact distance, for two bodies the mean of theirs. >= 0;
+    // default: 2 % of the mean edge length of the surface [m].
     std::optional<Real> contact_distance{};
     bool self_contact = false;                        // true: contacts act between parts of the surface of the body
     BodyDynamics dynamics = BodyDynamics::automatic;  // how the body moves
@@ -131,7 +134,7 @@ struct BodySettings {
     std::string name{};                           // name of the body in messages and output
 };
 
-/// A half-space. The side that the normal points to is free.
+/// A solid half-space bounded by a plane. The normal points out of the solid.
 struct Plane {
     Vec3 normal = {0, 0, 1};    // normal vector, of any length except zero
     Vec3 point = Vec3::Zero();  // a point of the plane [m]
@@ -167,15 +170,15 @@ using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, Surfac
 /// axis at constant speed.
 struct MotionKey {
     Real time = 0;                 // time, which must increase from key to key [s]
-    Vec3 position = Vec3::Zero();  // [m]
+    Vec3 position = Vec3::Zero();  // position of the origin of the moved frame in the world [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
-/// A scripted motion: either constant velocities from the time at which it is given, or keyframes at absolute times.
-/// With keyframes both velocities must be zero.
+/// A scripted motion: either constant velocities from the time at which the motion is given, or keyframes at absolute
+/// times. With keyframes both velocities must be zero.
 struct Motion {
-    Vec3 velocity = Vec3::Zero();          // [m/s]
-    Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
+    Vec3 velocity = Vec3::Zero();          // constant velocity [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  // constant angular velocity [rad/s]
     std::vector<MotionKey> keys{};         // poses at ascending times; empty: the velocities apply
 
     /// True if a key has a rotation.
@@ -188,18 +191,18 @@ struct Motion {
 
 /// Pose, motion and surface properties of a collider.
 struct ColliderSettings {
-    Vec3 position = Vec3::Zero();  // [m]
+    Vec3 position = Vec3::Zero();  // position of the origin of the shape's frame in the world [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
-    // Keys are poses of the collider itself, as World::pose returns them, and replace `position` and `rotation`. For a
-    // plane they also replace Plane::point and normal. If no key has a rotation, `rotation` (for a plane: the normal)
-    // stays.
+    // Scripted motion. Its keys are poses of the collider in the world, as World::pose returns them. They replace
+    // `position` and `rotation`, and for a plane also Plane::point and Plane::normal. If no key has a rotation, the
+    // collider keeps `rotation`, and a plane its normal.
     Motion motion{};
-    // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
-    // given, it uses the value of the body.
+    // Friction coefficient, >= 0. If given, a contact uses the geometric mean of this value and that of the body. If
+    // not given, a contact uses the value of the body.
     std::optional<Real> friction{};
     std::optional<Real> static_friction{}, dynamic_friction{};  // see MaterialSettings; default of each: `friction`
-    // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not
-    // given, it uses the value of the body.
+    // Coefficient of restitution, from 0 to 1. If given, a contact uses the larger of this value and that of the body.
+    // If not given, a contact uses the value of the body.
     std::optional<Real> restitution{};
     Real contact_distance = 0;                   // contact distance of a mesh collider, >= 0 [m]
     std::uint32_t collision_group = 1;           // see BodySettings::collision_group
@@ -211,24 +214,24 @@ struct ColliderSettings {
 struct Settings {
     // Acceleration of all bodies [m/s^2]. Change it when your vertical axis is not z, or when there is no gravity.
     Vec3 gravity = {0, 0, -9.81};
-    // Upper bound of the step length [s]. Steps never exceed the stable step of the stiffest body, which is also the
-    // default. If the world has a rigid or implicit body, the default is at most 1/120 s. Change it when you need
-    // smaller errors in time, or steps of equal length in several runs.
+    // Upper limit of the step length [s]. Default: the stable step of the stiffest body, but at most 1/120 s if the
+    // world has a rigid or implicit body. Even with a larger value, steps never exceed the stable step. Change it when
+    // you need smaller errors in time, or steps of equal length in several runs.
     std::optional<Real> step_size{};
     // Parameter theta of the theta method for implicit bodies, from 0.5 to 1. The value 1 is backward Euler, which
-    // damps vibrations. The value 0.55 causes a tenth of this damping. Values below 1 require symplectic_euler
-    // (docs/methods/implicit_bodies.md 2). Change it when an implicit body must keep vibrating.
+    // damps vibrations. The value 0.55 causes a tenth of this damping. Values below 1 require the integrator
+    // symplectic_euler (docs/methods/implicit_bodies.md 2). Change it when an implicit body must keep vibrating.
     Real theta = 1;
-    // Upper bound of the step length of implicit bodies without attachments [s]. With 0, implicit bodies use the step
-    // length of the other bodies. If the other bodies need shorter steps, an implicit body takes one step while the
-    // others take several (docs/methods/implicit_bodies.md 9). Values above 0 require symplectic_euler. Change it when
-    // implicit bodies take most of the computing time beside explicit ones.
+    // Upper limit of the step length of implicit bodies without attachments [s]. With 0, implicit bodies use the step
+    // length of the other bodies. With a value above 0, an implicit body takes one long step while other bodies that
+    // need shorter steps take several (docs/methods/implicit_bodies.md 9). Such values require the integrator
+    // symplectic_euler. Change it when implicit bodies take most of the computing time beside explicit ones.
     Real implicit_step = 0;
     // Time integrator (docs/step_length.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;
-    // If true, elements of explicit bodies whose stable step is much shorter than that of the others are integrated
-    // implicitly, together with the nodes around them: a cluster (docs/methods/clusters.md). Change it when all
-    // elements of explicit bodies must be integrated explicitly.
+    // If true, elements of explicit bodies whose stable step is much shorter than that of the other elements are
+    // integrated implicitly. Nodes that such elements connect form a cluster (docs/methods/clusters.md). Change it when
+    // all elements of explicit bodies must be integrated explicitly.
     bool clusters = true;
     // Thread library. `automatic` selects the first library of this build, which is tbb unless tbb was left out. Change
     // it when your program already uses another library.
@@ -257,16 +260,16 @@ struct Settings {
     StartOverlaps start_overlaps = StartOverlaps::resolve;
     // If true, bodies that touch or are joined fall asleep together when each of them has been still for sleep_time.
     // Steps leave sleeping bodies and their contacts unchanged, until another object presses on such a body, or you
-    // change it. A body is still if it hardly moves and its motion neither grows nor continues steadily. Its distance
-    // from equilibrium is then at most a thousandth of its deflection (docs/methods/skipping.md 3.1). Change it when
-    // you study motion below these limits.
+    // change the body. A body is still if it hardly moves and its motion neither grows nor continues steadily. It is
+    // then so near to equilibrium that the remaining displacement is about a thousandth of its deflection or less
+    // (docs/methods/skipping.md 3.1). Change it when you study slower or smaller motion.
     bool sleep = true;
     // Time for which a body must be still before it falls asleep, >= 0 [s]. Change it when bodies fall asleep too early
     // or too late.
     Real sleep_time = 0.5;
-    // If true, a step in which surfaces would pass through each other is repeated with the crossing features as
-    // contacts. Only pairs of features that may have met in the step are tested. Change it when surfaces may pass
-    // through each other and the tests cost too much time.
+    // If true, a step in which surfaces would pass through each other is repeated, with contacts between the features
+    // (nodes, edges, triangles) that crossed. Only features that move fast enough to meet in the step are tested.
+    // Change it when surfaces may pass through each other and the tests cost too much time.
     bool continuous_collision = true;
 };
 

@@ -20,9 +20,9 @@ struct SliderTarget {
 };
 
 /// A value within bounds that drives one object, or several objects in the same way. For a PoseControl the value is a
-/// displacement along `along` [m], or an angle about the axis `about` through the origin of the object [rad]. For other
-/// controls it is the value that the control sets. A slider also drives clones of the world, in which its handles are
-/// valid.
+/// displacement in the direction `along` [m], or an angle about the axis `about` through the origin of the object's
+/// frame [rad]. For other controls it is the value that the control sets. A slider can also be used with clones of the
+/// world, because its handles name the same objects there.
 struct Slider {
     std::string name;                     // unique in its scene
     std::string unit;                     // SI unit of the value; 1 for factors
@@ -35,8 +35,8 @@ struct Slider {
 
 /// Present value of a slider, read from the first of its objects. Throws SceneError if this object was removed.
 Real slider_value(const World& world, const Slider& slider);
-/// Lets the value change to `value` steadily, at the rate `fastest`, during the next calls of advance. Throws
-/// SceneError if the value is out of bounds or an object was removed.
+/// Sets the target of a slider. During the next calls of advance, the value of the slider changes to `value` at the
+/// constant rate Slider::fastest. Throws SceneError if `value` is out of bounds or an object was removed.
 void set_slider(World& world, const Slider& slider, Real value);
 
 }  // namespace skerry

@@ -22,7 +22,9 @@ struct SpringSettings {
     Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
     std::optional<TimeTable> rest_length{};  // each value >= 0; default: the length when the spring is added [m]
     SpringSide only = SpringSide::both;      // spring and damper act in tension, in compression or in both
-    Real strength = infinity;  // largest force, > 0 [N]; if stretched further, the spring keeps this force
+    // Largest magnitude of the force of spring and damper together, > 0 [N]. A spring that is stretched or compressed
+    // further keeps this force.
+    Real strength = infinity;
 };
 
 /// Present state of a spring. Before the first step `force` is zero.
@@ -47,7 +49,8 @@ public:
     SpringHandle add(const SpringSettings& spring);
     /// Ends, length and force of a spring after the last step.
     SpringState state(SpringHandle spring) const;
-    /// Settings with which add() would make an equal spring now: anchors have their present positions.
+    /// Settings with which add() would make a spring like this one in its present state: the anchors have their present
+    /// positions.
     SpringSettings settings(SpringHandle spring) const;
 
     /// Moves the second anchor of a spring. The rest length does not change. Call this repeatedly to drag a body, for

@@ -20,9 +20,9 @@ namespace skerry {
 /// Difference of a run from the scene as it is. "The scene as it is" means the scene file with the changes in
 /// StudySettings::assignments.
 struct StudyVariant {
-    // mesh level: 0 is the mesh of the scene, each level up halves the edges, each level down doubles them
+    // mesh level: 0 is the mesh of the scene; each level up halves the edge length, each level down doubles it
     int refine = 0;
-    Real step = 1;       // ratio of the step length to the mean step of the unchanged scene; 1: the scene's own steps
+    Real step = 1;       // ratio of the step length to the mean step of the scene as it is; 1: the scene's own steps
     Real tolerance = 1;  // ratio of the solver's tolerance to that of the scene
     std::optional<ElementKind> element{};  // element kind of all bodies; empty: the kinds of the scene
     int draw = 0;  // seed of the random shifts of the start positions, up to 1e-12 m; 0: no shifts
@@ -52,35 +52,36 @@ struct EnumNames<StudyRunStatus> {
 /// A time series of a run.
 struct StudyColumn {
     SeriesColumn what;  // probe, quantity and unit
-    // Diagonal of the bounding box at the start [m]. The box contains the body of the column, or all bodies if the
-    // column belongs to none.
+    // Length scale of the column [m]: diagonal, at the start, of the bounding box of the body to which the column
+    // belongs. If it belongs to no body, the box contains all bodies.
     Real size = 0;
-    // False for a column that gets no error bar of its own, such as the position of one of many bodies.
+    // false for a column that gets no error bar of its own, such as the position of one of many bodies
     bool reported = true;
-    // true for a mean, least or largest value of all bodies, which is meaningful also in a chaotic run
+    // true for a mean, least or largest value over all bodies without attachments, meaningful also in a chaotic run
     bool is_statistic = false;
     std::vector<Real> values{};  // one for each time in StudyRun::time; NaN if unknown
-    // For a column of a largest stress: node with the largest value in the run, numbered within its body. Else
-    // no_index.
+    // For a column of a largest stress: number of the node with the largest value in the run, within its body. For
+    // other columns: no_index.
     Index node = no_index;
     Vec3 place = Vec3::Zero();  // position of `node` at the start [m]
-    // Relative error of the values that finer meshes do not reduce: their faces stay in the flat faces of the scene's
-    // mesh, which approximate a curved surface.
+    // Relative error of the values because flat faces approximate a curved surface. Runs with finer meshes do not show
+    // this error, because they keep the flat faces of the scene's mesh.
     Real shape_error = 0;
 };
 
-/// The faces on which a traction of a scene acts.
+/// Area of the faces on which a traction of a scene acts. A study compares this area between runs, because a traction
+/// can select other faces on a finer mesh.
 struct StudyLoad {
     std::string name;  // name of the load
     Real area = 0;     // area of its faces at the start [m^2]
     bool operator==(const StudyLoad&) const = default;
 };
 
-/// A run of a study. `skerry run SCENE` with `assignments` as --set repeats the run, without the shifts of
-/// StudyVariant::draw.
+/// A run of a study. The command `skerry run SCENE`, with one option --set for each of `assignments`, repeats the run,
+/// except for the random shifts of StudyVariant::draw.
 struct StudyRun {
     StudyVariant variant;  // difference from the scene as it is
-    // assignments of StudySettings, then those of `variant`; see SceneOverrides::assignments
+    // StudySettings::assignments, then assignments that make the change `variant`; see SceneOverrides::assignments
     std::vector<std::string> assignments;
     StudyRunStatus status = StudyRunStatus::ok;  // outcome
     std::string message{};                       // reason, unless the status is ok
@@ -120,16 +121,16 @@ struct EnumNames<StudyVerdict> {
 
 /// A number with its error bar. Values that were not measured are NaN.
 struct StudyQuantity {
-    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end; figures: end, max, min, mean, agreed (last value on
-    // which runs with shifted starts agree)
+    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end. FIGURE tells the value of the time series: end, max,
+    // min, mean, or agreed (last value on which runs with shifted start positions agree).
     std::string name;
     std::string unit;                                     // SI unit; 1 for counts and ratios
     Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
-    // Value extrapolated to edge length, step length and tolerance 0, and half width of the error bar of this value.
+    // best: value extrapolated to edge length, step length and tolerance 0. best_error: half width of its error bar.
     Real best = std::numeric_limits<Real>::quiet_NaN(), best_error = std::numeric_limits<Real>::quiet_NaN();
     Real error = std::numeric_limits<Real>::quiet_NaN();  // half width of the error bar of `value`
-    // Part of `error` from the mesh. A part is 0 if the study plans no runs for it, for example the mesh of rigid
-    // bodies.
+    // Part of `error` from the mesh. A part (this one and the next three) is 0 if the study plans no runs that could
+    // show it; `mesh`, for example, is 0 if all bodies are rigid.
     Real mesh = std::numeric_limits<Real>::quiet_NaN();
     Real step = std::numeric_limits<Real>::quiet_NaN();     // part of `error` from the step length
     Real contact = std::numeric_limits<Real>::quiet_NaN();  // part of `error` from the tolerance of the contact solver
@@ -137,7 +138,7 @@ struct StudyQuantity {
     // Scale to which relative errors refer: the largest absolute value over the run; for lengths and energies, the
     // largest change from the start.
     Real scale = std::numeric_limits<Real>::quiet_NaN();
-    // Observed order of convergence: the part `mesh` is proportional to this power of the edge length.
+    // Observed order of convergence in the edge length: the part `mesh` is proportional to this power of the length.
     Real mesh_order = std::numeric_limits<Real>::quiet_NaN();
     Real step_order = std::numeric_limits<Real>::quiet_NaN();  // observed order in the step length
     // theoretical order of convergence in the edge length
@@ -145,8 +146,8 @@ struct StudyQuantity {
     // theoretical order of convergence in the step length
     Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();
     StudyVerdict verdict = StudyVerdict::not_measured;  // reliability
-    std::string sentence{};                             // verdict in words
-    Real agree_until = infinity;  // time until which runs whose start positions differ by rounding agree [s]
+    std::string sentence{};                             // verdict in words, with its reason
+    Real agree_until = infinity;  // time until which runs with start positions shifted by up to 1e-12 m agree [s]
     // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
     std::vector<Real> run_values{}, run_errors{};
 };
@@ -154,11 +155,13 @@ struct StudyQuantity {
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
     StudyVariant variant;  // difference from the scene as it is
-    bool reaches = false;  // false: no settings reach the wanted error; these exceed the smallest error by at most 10 %
-    double error = 0;      // largest predicted relative error; only quantities that are known or irregular count
+    // False if no settings reach the wanted error. These settings are then the cheapest among those whose error exceeds
+    // the smallest error by at most 10 %.
+    bool reaches = false;
+    double error = 0;        // largest predicted relative error of a quantity with the verdict `known` or `irregular`
     double cpu_seconds = 0;  // predicted CPU time [s]
     std::string sentence{};  // the quantity with the largest error, or why no settings reach the wanted error
-    std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
+    std::vector<std::string> assignments{};  // assignments for `skerry run --set` that make these settings
 };
 
 /// Error bars of the quantities of a scene, and the runs that they come from.
@@ -167,13 +170,13 @@ struct StudyResult {
     std::vector<StudyRun> runs;             // runs[0] is the run of the scene as it is
     std::vector<StudyQuantity> quantities;  // values and error bars of all reported columns
     double wanted_error = 0;                // StudySettings::error
-    // Half widths of the error bars of the values in runs[0].columns, by column and row. Columns that are not reported
-    // are empty. Half widths are NaN after StudyQuantity::agree_until of the column's quantities, except in columns of
-    // statistics.
+    // Half widths of the error bars of the values in runs[0].columns, by column and row. The list of a column that is
+    // not reported is empty. Half widths are NaN after StudyQuantity::agree_until of the column's quantities, except in
+    // columns with is_statistic.
     std::vector<std::vector<Real>> bands;
-    std::optional<CheapestSettings> cheapest;  // empty if no quantity is known or irregular
+    std::optional<CheapestSettings> cheapest;  // empty if no quantity has the verdict `known` or `irregular`
     Real agree_until = infinity;               // time until which runs with shifted starts agree on all positions [s]
-    Real growth_rate = 0;                // exponential growth rate of small differences of the start; 0: none [1/s]
+    Real growth_rate = 0;                // exponential growth rate of small differences at the start; 0: none [1/s]
     std::vector<std::string> sentences;  // remarks on the study as a whole
     bool stopped = false;                // true if go_on ended the study; runs and quantities are then empty
 };
@@ -194,8 +197,9 @@ struct StudySettings {
     std::optional<Real> seconds{};           // duration of the runs; empty: that of the scene [s]
     std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
     int threads = 0;                         // number of threads of the study; 0: the number of cores
-    // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Runs that do not
-    // fit are left out, the least important first. Empty: 15, or more if the study then still takes less than 5 s.
+    // Upper limit of the wall time of the study, divided by that of one run of the scene with one thread, > 0. Runs
+    // that do not fit are left out, the least important first. Empty: 15, or more as long as the study takes less than
+    // 5 s.
     std::optional<double> budget{};
     // Folder in which each run is stored when it ends. A later study of the unchanged scene reads these runs instead of
     // making them again. Empty: no folder.
@@ -208,9 +212,10 @@ struct StudySettings {
 };
 
 /// Runs a scene with several meshes, steps, tolerances and element kinds, and determines the error of each probe. The
-/// runs and their order of importance are listed in docs/study.md. The numbers do not depend on the number of threads,
-/// except through the budget, which decides which runs fit. If a variant fails, the study continues. If the scene as it
-/// is fails in a step, the study ends without quantities, and StudyResult::sentences contains the reason.
+/// runs and their order of importance are listed in docs/study.md. The results of runs do not depend on the number of
+/// threads; only the choice of the runs that fit into the budget depends on it. If a variant fails, the study
+/// continues. If the scene as it is fails in a step, the study ends without quantities, and StudyResult::sentences
+/// contains the reason.
 ///
 /// Throws SceneError if the scene cannot be read or built, a setting or the name of a probe is invalid, the folder
 /// holds runs of another scene or of other settings, or a file of the scene changes during the study.

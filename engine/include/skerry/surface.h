@@ -31,9 +31,10 @@ public:
     /// `world` must exist as long as the view.
     explicit SurfacePairs(World& world) : world_(&world) {}
 
-    /// Sets the properties of contacts between two materials, and wakes the bodies that have one of them. For this
-    /// purpose a body has one material, BodySettings::material, even where its tetrahedra have others. Contacts of the
-    /// pair ignore friction and restitution of single bodies and colliders, but not those of surface sets.
+    /// Sets the properties of contacts between two materials, and wakes the bodies that have one of the two materials.
+    /// The material of a body in a contact is BodySettings::material, even where its tetrahedra have other materials.
+    /// These properties replace the friction and restitution of single bodies and colliders. Those of surface sets take
+    /// precedence.
     void set(MaterialHandle first, MaterialHandle second, const SurfaceSettings& surface);
     /// Removes the properties of a pair. Does nothing if the pair has none.
     void remove(MaterialHandle first, MaterialHandle second);
@@ -62,12 +63,12 @@ struct SurfaceSetSettings {
     std::vector<Index> nodes{};                 // numbers in the mesh; nodes inside the body have no effect
     std::vector<std::array<Index, 3>> faces{};  // boundary faces, each by its three nodes in any order
     SurfaceSettings surface{};                  // missing properties are those of the body
-    // Friction coefficient for sliding perpendicular to `direction`, > 0. The friction in `surface`, which must then be
-    // given, applies to sliding along `direction`. The ratio `friction_across` / friction also applies to static
-    // friction.
+    // Friction coefficient for sliding perpendicular to `direction`, > 0. If it is given, the dynamic friction in
+    // `surface` must be given and > 0; it applies to sliding along `direction`. The ratio of the two coefficients also
+    // applies to static friction.
     std::optional<Real> friction_across{};
-    // Direction in the frame of the mesh, carried along by the faces when the body moves and deforms. Required for
-    // friction_across.
+    // Direction in the frame of the mesh, of any length but zero. It moves with the faces when the body moves and
+    // deforms. Required for friction_across.
     std::optional<Vec3> direction{};
 };
 
@@ -79,14 +80,14 @@ public:
     using ObjectView::ObjectView;
 
     /// Adds a set. It is removed with its body. Where sets overlap, the set that was added last applies. At a contact,
-    /// a property of a set replaces that of the body and that of the pair of materials. It is combined with the
-    /// property of the other object by the general rule, see MaterialPair. For two surfaces with directions, the
-    /// geometric mean of both friction tensors applies.
+    /// a property of the set replaces that of the body and that of the pair of materials. The property is combined with
+    /// that of the other object by the general rule (see MaterialPair). If both surfaces have directions, the contact
+    /// uses the geometric mean of their friction tensors.
     SurfaceSetHandle add(const SurfaceSetSettings& set);
     /// Settings of a set.
     SurfaceSetSettings settings(SurfaceSetHandle set) const;
     /// Replaces the properties of a set, and wakes its body. Without `friction_across` the friction no longer depends
-    /// on the direction. With it, throws SceneError if the set has no direction.
+    /// on the direction. Throws SceneError if `friction_across` is given but the set has no direction.
     void set_surface(SurfaceSetHandle set, const SurfaceSettings& surface, std::optional<Real> friction_across = {});
 };
 

@@ -25,8 +25,8 @@ enum class SurfaceFaultKind {
     shell_crossings,      // pairs of triangles of different shells that pass through each other
     overlaps,             // pairs of triangles that overlap in a common plane
     flat_shells,          // closed shells without volume
-    doubled_volumes,      // triangles or edges at which the volume inside is enclosed twice by closed shells
-    slivers,              // triangles with an altitude up to the tolerance (here at least default_weld)
+    doubled_volumes,      // triangles or edges behind which two closed shells enclose the same volume
+    slivers,              // triangles with an altitude up to the length with which check_surface() finds crossings
     thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
@@ -53,28 +53,29 @@ struct EnumNames<SurfaceFaultKind> {
     }};
 };
 
-/// All faults of one kind. Triangles are given by their numbers in the checked surface, from 0.
+/// All faults of one kind. Triangles are given by their numbers in the given surface, from 0.
 struct SurfaceFault {
     SurfaceFaultKind kind{};    // kind of the fault
     std::size_t count = 0;      // number of faults; the comment on the kind says of which objects
     Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
-    // pairs: second triangle of the first pair; duplicate_shells: a triangle of the repeated shell
+    // Second triangle of the first pair, if the kind counts pairs of triangles. For duplicate_shells: a triangle of the
+    // shell that is repeated. For other kinds: no_index.
     Index other = no_index;
     Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
     Real length = 0;            // holes: length of the edges around the longest hole; thin_walls: smallest thickness;
                                 // duplicate_shells: largest distance to the repeated shell; unlikely_size: diagonal [m]
 };
 
-/// Part of a surface whose triangles are connected by common edges. Where several volumes meet at an edge, only
-/// triangles around the same volume are connected there.
+/// Part of a surface whose triangles are connected by common edges. If several volumes meet at an edge, the edge
+/// connects only triangles that bound the same volume.
 struct SurfaceShell {
     std::size_t triangles = 0;  // number of triangles
     Index triangle = no_index;  // first triangle, by its number in the given surface
     bool closed = false;        // true if it has no open edges and a consistent orientation
     // enclosed volume after the orientation is repaired; negative for a void in another shell; 0 if not closed [m^3]
     Real volume = 0;
-    // Row in SurfaceReport::shells of the closed shell of least volume around this one; no_index: none. A shell inside
-    // another one bounds a void if its volume is negative, else a region of its own.
+    // Row in SurfaceReport::shells of the closed shell of least volume around this one; no_index: none. A shell that
+    // lies inside another one bounds a void if its volume is negative, otherwise a region of its own.
     Index around = no_index;
 };
 
@@ -85,12 +86,13 @@ struct SurfaceReport {
     Real tolerance = 0;                               // nodes up to this distance apart were merged; negative: none [m]
     std::size_t merged = 0;                           // number of nodes that were merged into another node
     Real min_edge = 0, mean_edge = 0, max_edge = 0;   // edge lengths of the cleaned surface [m]
-    // area of the cleaned surface; volume of the closed shells [m^2, m^3]
+    // area of the cleaned surface [m^2]; volume inside its closed shells, without voids [m^3]
     Real area = 0, volume = 0;
     // faults, at most one entry of each kind, in the order of the kinds
     std::vector<SurfaceFault> faults{};
-    // Welded surface without flat and duplicate triangles and duplicate shells. Connected triangles have the same
-    // orientation, and closed shells that lie in no other shell enclose a positive volume. Holes and crossings remain.
+    // The given surface after repair: near nodes are merged, and flat triangles, duplicate triangles and duplicate
+    // shells are removed. Connected triangles have the same orientation, and closed shells that lie in no other shell
+    // enclose a positive volume. Holes and crossings remain.
     SurfaceMesh cleaned{};
     std::vector<Index> number{};         // for each triangle of `cleaned`: its number in the given surface
     std::vector<Index> shell{};          // for each triangle of `cleaned`: its row in `shells`
@@ -109,23 +111,22 @@ struct SurfaceReport {
 
 namespace mesh {
 
-/// Tolerance of a check, as a fraction of the diagonal of the bounding box. It is larger than rounding errors of
-/// positions with seven digits, as in STL files.
+/// Default tolerance of check_surface(), as a fraction of the diagonal of the bounding box. It is larger than rounding
+/// errors of positions with seven digits, as in STL files.
 inline constexpr Real default_weld = 1e-6;
-/// A tolerance with which no nodes are merged, not even equal ones.
+/// A tolerance for check_surface() with which no nodes are merged, not even equal ones.
 inline constexpr Real no_weld = -1;
 
-/// Checks a surface. Nodes up to d = `tolerance` * (diagonal of the bounding box) apart are first merged, and so are
-/// the ends of a chain of such nodes. With 0 only equal nodes are merged. Triangles cross if they overlap in every
-/// direction by more than d, or than default_weld times the diagonal if this is larger. The order of the nodes and
-/// triangles does not change. Throws SceneError if a node is not finite or a triangle has a node that does not exist.
-/// The error uses `name` as the name of the surface.
+/// Checks a surface. First merges nodes that are at most d = `tolerance` * (diagonal of the bounding box) apart; in a
+/// chain of such nodes all become one node. With the tolerance 0 only equal nodes are merged. Triangles cross if they
+/// overlap in every direction by more than the larger of d and default_weld times the diagonal. The order of the nodes
+/// and triangles does not change. Throws SceneError if a node is not finite or a triangle has a node that does not
+/// exist. The error uses `name` as the name of the surface.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 
-/// Merges nodes as `check_surface` does, and drops triangles left with fewer than three different nodes. `number`, if
-/// given, is filled with the number that each remaining triangle has in `surface`. Nodes up to `distance` apart are
-/// merged [m].
+/// Merges nodes that are at most `distance` [m] apart, as check_surface() does. Then removes triangles that have fewer
+/// than three different nodes. `number`, if given, gets for each remaining triangle its number in `surface`.
 SurfaceMesh weld(const SurfaceMesh& surface, Real distance, std::vector<Index>* number = nullptr);
 
 /// Describes the faults of a kind with their number and the first place, for example "2 holes, the longest 0.3 m around

@@ -14,8 +14,8 @@ namespace skerry {
 
 /// A tie between nodes of a deformable body and another object: the body `to_body`, which may be of any kind, the
 /// collider `to_collider`, or the world if neither is given. Each node is tied in its present position to the nearest
-/// surface point of the other object. Throws SceneError if this point is farther away than the mean edge length of the
-/// body's surface. The tie of a single node acts like a ball joint.
+/// surface point of the other object. Ties::add() throws SceneError if this point is farther away than the mean edge
+/// length of the surface of `body`. The tie of a single node acts like a ball joint.
 ///
 /// The kind `ball` ties only the mean point of all nodes, weighted by their masses. This point may be at any distance
 /// from a rigid object when the tie is made, and then keeps its position relative to this object. The impulse of the
@@ -28,12 +28,12 @@ struct TieSettings {
     // surface.
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider; not together with `to_body`
-    // Force at which a node breaks off, > 0 [N]. Each node breaks off by itself, at the end of the first step in which
-    // its force is greater. A ball breaks as a whole, when the total force is greater. By default, a tie does not
-    // break.
+    // Upper limit of the force on a tied node, > 0 [N]. Each node breaks off by itself, at the end of the first step in
+    // which its force exceeds the limit. A tie of the kind `ball` breaks as a whole if the total force exceeds the
+    // limit. By default, a tie does not break.
     Real break_force = infinity;
-    // false: each node keeps its initial distance from the surface. true: the distance is closed at
-    // Settings::recovery_speed.
+    // false: each node keeps its initial distance from the surface. true: the tie closes this distance, at a speed
+    // limited by Settings::recovery_speed.
     bool close_gap = false;
     // false: the body and the other object do not collide while at least one node is tied.
     bool bodies_touch = false;
@@ -70,7 +70,7 @@ class Ties : public ObjectView<TieHandle> {
 public:
     using ObjectView::ObjectView;
 
-    /// Ties nodes of a body.
+    /// Ties nodes of a body to another object or to the world.
     TieHandle add(const TieSettings& tie);
     /// Nodes and forces of a tie after the last step.
     TieState state(TieHandle tie) const;

@@ -28,8 +28,8 @@ struct VisualSurface {
     std::vector<Vec3> nodes{};                          // nodes in the frame of the body's mesh [m]
     std::vector<std::array<Index, 3>> triangles{};      // indices of `nodes`, counter-clockwise as seen from outside
     std::vector<std::array<Real, 2>> texture_points{};  // texture coordinates (u, v)
-    // Indices of `texture_points` for the corners of each triangle. A triangle without texture has three times
-    // no_index. The list is empty if no triangle has a texture.
+    // Indices of `texture_points` for the corners of each triangle. All three are no_index for a triangle without
+    // texture. The list is empty if no triangle has a texture.
     std::vector<std::array<Index, 3>> texture_corners{};
     std::vector<VisualMaterial> materials{};  // materials of the triangles
     // Index in `materials` for each triangle, or no_index. The list is empty if `materials` is empty.
@@ -52,8 +52,8 @@ VisualSurface read_visual(const std::string& path, std::vector<std::string>* not
 /// Distances between a visual surface and its body, both in their rest shapes.
 struct VisualFit {
     std::size_t outside = 0;  // number of nodes of the visual surface outside of the body
-    Real farthest = 0;        // largest distance of the nodes outside from the body [m]
-    // Explains which distances or sizes are not plausible; empty if all are.
+    Real farthest = 0;        // largest distance of these nodes from the body [m]
+    // Tells if distances or sizes suggest a wrong unit or a wrong position of the surface; empty if they do not.
     std::string warning{};
 };
 
@@ -61,9 +61,9 @@ struct VisualFit {
 /// surfaces are saved, cloned and removed with their bodies. Steps do not depend on them, so they are not part of
 /// state_hash(). Functions throw SceneError if a handle is stale.
 ///
-/// Each node of the surface follows the nearest point of the body. A node outside also keeps its offset from this
-/// point, which moves with the mean deformation gradient of the tetrahedra around the point. Affine motions are
-/// therefore reproduced exactly, and the surface stays connected (docs/outputs.md).
+/// Each node of the surface follows the nearest point of the body. A node outside of the body also has an offset from
+/// this point. The mean deformation gradient of the tetrahedra around the point rotates and stretches the offset. The
+/// surface therefore reproduces affine motions exactly, and stays connected (docs/outputs.md).
 class Visuals {
 public:
     /// `world` must exist as long as the view.

@@ -29,8 +29,8 @@ namespace skerry {
 
 struct StepProblem;  // defined in problem.h
 
-/// Settings of a loaded world or of a clone. They do not change the results of steps. For a missing value, the value of
-/// the saved or cloned world is used. If this build does not have the backend of that world, `automatic` is used.
+/// Settings of a loaded world or of a clone. They do not change the results of steps. A missing value is taken from the
+/// saved or cloned world. If this build does not have the backend of that world, Backend::automatic is used.
 struct LoadSettings {
     std::optional<Backend> backend{};  // library that manages the threads
     std::optional<int> threads{};      // number of threads, >= 0; a world with one thread starts no other thread
@@ -49,15 +49,15 @@ public:
 
     // Copies and files; allowed between calls of advance (docs/save_restore.md). A copy continues exactly like this
     // world, bit by bit, on any number of threads. Handles of this world name the same objects in the copy, and the
-    // report() of the copy covers the whole run. Not copied are the functions of watch_steps() and
-    // watch_contact_problems(), recorded traces and the computing times of stages.
+    // report() of the copy covers the whole run, including the steps of this world. Not copied are the functions of
+    // watch_steps() and watch_contact_problems(), recorded traces and the computing times of stages.
     /// Returns a copy of this world.
     World clone(const LoadSettings& settings = {}) const;
     /// Saves the world. The file is written under another name and then renamed, so an existing file is replaced
     /// completely or not at all. If writing fails, throws SceneError that names the cause; the world is unchanged.
     void save(const std::filesystem::path& file) const;
-    /// Reads a world that save() wrote. If a part of the file is not as expected, throws SceneError that names the
-    /// file, the data set, and the found and the expected value.
+    /// Reads a world that save() wrote. Throws SceneError if the file cannot be read or a value in it is invalid; the
+    /// error names the file, the data set, and the found and the expected value.
     static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
     /// Returns the bytes that save() writes.
     std::vector<std::byte> to_bytes() const;
@@ -91,19 +91,19 @@ public:
     /// has no mass. It touches bodies, and no other collider.
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
-    /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at
-    /// absolute times; the nodes are attached to the pose that the keys give for the present time. For a rigid or
+    /// follow `motion`. A constant angular velocity rotates the nodes about the point `pivot` [m]. Keys of a motion are
+    /// poses, at absolute times, of a frame to which the nodes are attached in its present pose. For a rigid or
     /// implicit body at least three nodes that are not on one line are required. They hold the whole rigid body, or the
     /// frame of the implicit body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
     ///
     /// `directions`: the nodes are held along these directions only, and are free normal to them (a roller support).
     /// Directions are fixed in the world, of any nonzero length, and perpendicular to each other. Empty: the nodes are
-    /// held completely. Only for explicit bodies, and for velocities or keys without rotation. Several attachments can
-    /// hold a node along directions that are perpendicular or equal; of equal ones the last attachment moves the node.
-    /// The contact solver satisfies these conditions together with the contacts, except for contacts whose normal lies
-    /// exactly along held directions. There it treats the nodes as free: the impulse acts on the attachment instead of
-    /// stopping the other object. Hold nodes completely where objects press on them in this way
-    /// (docs/methods/sets_and_rollers.md).
+    /// held completely. Directions are only for explicit bodies, and for velocities or keys without rotation. Several
+    /// attachments can hold a node if their directions are perpendicular or equal; along equal directions the node
+    /// follows the last attachment. The contact solver keeps held directions together with the contacts, with one
+    /// exception: a contact whose normal lies exactly along a held direction treats the node as free, so that the
+    /// attachment takes up the impulse and the other object is not stopped. Hold nodes completely where objects press
+    /// on them in this way (docs/methods/sets_and_rollers.md).
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
     /// Removes an object, and with it the joints, ties and other objects that name it.
@@ -117,28 +117,29 @@ public:
 
     // Running the simulation.
 
-    /// Finds overlaps of bodies and colliders that were added or moved by the user since the last check, and treats
-    /// them according to Settings::start_overlaps. Every call of advance() begins with this check. Call it earlier to
-    /// get the result before the first step (WorldReport::start_overlaps). If overlaps are refused, throws SceneError
-    /// and changes nothing.
+    /// Finds overlaps of bodies and colliders that were added or moved by the user since the last check, and treats the
+    /// overlaps according to Settings::start_overlaps. Every call of advance() begins with this check. Call
+    /// settle_start() earlier to get the result before the first step (WorldReport::start_overlaps). If overlaps are
+    /// refused, throws SceneError and changes nothing.
     void settle_start();
-    /// Advances time by dt [s] in equal steps no longer than the stable step. A step that cannot be committed changes
-    /// nothing and ends the call; the report names the body and the reason. Throws the errors of settle_start().
+    /// Advances time by dt >= 0 [s], in equal steps no longer than the stable step. A step that cannot be committed
+    /// changes nothing and ends the call; the report names the body and the reason. Throws SceneError if dt is
+    /// negative, not finite or longer than 2147483647 steps. Throws the errors of settle_start(), too.
     StepReport advance(Real dt);
     /// Advances like advance(dt), but calls `go_on` with the report so far before each attempt at a step. If `go_on`
     /// returns false, the call ends between two steps. The report then has the status `stopped`, and the world can be
     /// advanced further.
     StepReport advance(Real dt, const std::function<bool(const StepReport&)>& go_on);
     /// From now on calls `observe` after every committed step, with the report so far, on the thread that advances.
-    /// `observe` may read the whole state, but must not change the world. With leapfrog, positions are then half a step
-    /// ahead of velocities. If `observe` throws an exception, the call of advance ends between two steps and rethrows
-    /// it. Pass an empty function to end the calls.
+    /// `observe` may read the whole state, but must not change the world. With the integrator leapfrog, the positions
+    /// that it reads are half a step ahead of the velocities. If `observe` throws an exception, the call of advance
+    /// ends between two steps and rethrows it. Pass an empty function to end the calls.
     void watch_steps(std::function<void(const StepReport&)> observe);
     /// Simulated time since the world was made [s].
     Real time() const;
     /// Settings of this world, with the gravity of set_gravity().
     const Settings& settings() const;
-    /// Stable step of the stiffest body [s], which is the longest step that advance() takes. If all bodies are rigid or
+    /// Stable step of the stiffest body [s], an upper limit of the steps of advance(). If all bodies are rigid or
     /// implicit: the step length that advance() uses.
     Real stable_step() const;
 
@@ -148,10 +149,11 @@ public:
     std::span<const Vec3> velocities(BodyHandle body) const;                  // velocities of the nodes [m/s]
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // node numbers of tetrahedra
-    /// Cauchy stress [Pa], without the relaxing part of the viscous stress, and Green strain. The value of a
-    /// tetrahedron is the mean over the elements that cover it. Values of nodes are recovered from the elements around,
-    /// and from the traction on the surface (docs/methods/elasticity.md 7.9). Between two materials the stress jumps;
-    /// nodes on the interface have the mean of both sides.
+    /// Cauchy stress and Green strain of a body, by tetrahedron or by node. The stress does not include the relaxing
+    /// part of the viscous stress. The value of a tetrahedron is the mean over the finite elements that cover it. The
+    /// value of a node is recovered from the elements around the node, and from the traction on the surface
+    /// (docs/methods/elasticity.md 7.9). At an interface of two materials the stress jumps, and a node has the mean of
+    /// the stresses of both sides.
     std::vector<Mat3> stress(BodyHandle body) const;       // Cauchy stress by tetrahedron [Pa]
     std::vector<Mat3> strain(BodyHandle body) const;       // Green strain by tetrahedron
     std::vector<Mat3> node_stress(BodyHandle body) const;  // Cauchy stress by node [Pa]
@@ -164,11 +166,11 @@ public:
     std::vector<Real> plastic_strain(BodyHandle body) const;
     std::vector<Real> von_mises_stress(BodyHandle body) const;         // von Mises stress by tetrahedron [Pa]
     std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // von Mises stress by node [Pa]
-    std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // by node, the largest first [Pa]
-    /// Step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest element
-    /// that covers the tetrahedron. The shortest of these steps is the stable step of an undeformed body. The stable
-    /// step of a strained body can be longer than the shortest, because elements at the same node share its mass. To
-    /// lengthen the stable step, repair the tetrahedra with the shortest step.
+    std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // three by node, the largest first [Pa]
+    /// Longest step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest
+    /// element that covers the tetrahedron. The shortest of these steps is the stable step of an undeformed body. The
+    /// stable step of a strained body can be longer than that, because elements at the same node share its mass. To
+    /// lengthen the stable step of a body, repair its tetrahedra with the shortest steps.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     /// Name of a body (BodySettings::name).
     const std::string& name(BodyHandle body) const;
@@ -181,7 +183,7 @@ public:
     /// `given`.
     DynamicsEstimate dynamics_choice(BodyHandle body) const;
     /// Present pose of the frame of the body's mesh; initially the pose in BodySettings. For a deformed body it is the
-    /// best fit, given by the centre of mass and the mean rotation.
+    /// pose in which the undeformed mesh fits best: it has the centre of mass and the mean rotation of the body.
     MotionKey pose(BodyHandle body) const;
     Real mass(BodyHandle body) const;              // mass of all nodes [kg]
     Vec3 center_of_mass(BodyHandle body) const;    // present centre of mass [m]
@@ -205,8 +207,8 @@ public:
     std::vector<Index> nodes(AttachmentHandle attachment) const;  // numbers of the attached nodes within the body
     // unit vectors along which the nodes are held; empty if they are held completely
     std::vector<Vec3> directions(AttachmentHandle attachment) const;
-    /// Velocities of a rigid motion: for a body the motion with its momentum and angular momentum, for a collider or an
-    /// attachment the motion in the last step.
+    /// Velocities of a rigid motion. For a body: the rigid motion that has the momentum and the angular momentum of the
+    /// body. For a collider or an attachment: its motion in the last step.
     Twist velocity(BodyHandle body) const;
     Twist velocity(ColliderHandle collider) const;
     Twist velocity(AttachmentHandle attachment) const;
@@ -221,24 +223,25 @@ public:
     /// Pose::position]. They apply until the motion is set again. Earlier keys and targets are dropped.
     void set_velocity(ColliderHandle collider, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     void set_velocity(AttachmentHandle attachment, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
-    /// Moves to the given pose at constant velocities, so that the pose is reached after `duration` (> 0 [s]), and then
-    /// stops. The motion uses the smaller of the two possible rotations. advance(duration) ends at this pose.
+    /// Moves a collider or an attachment to a pose at constant velocities. It reaches the pose after `duration` (> 0
+    /// [s]) of simulated time, at the end of advance(duration), and then stops. Of the two rotations that lead to the
+    /// pose, the motion uses the smaller one.
     void move_to(ColliderHandle collider, const Pose& pose, Real duration);
     void move_to(AttachmentHandle attachment, const Pose& pose, Real duration);
-    /// Jumps to a pose. Objects on the way are neither pushed nor detected. Constant velocities continue from the new
-    /// pose; keys and targets are dropped. Settings::start_overlaps applies to new overlaps. A body held by the
-    /// attachment is deformed. However, if the attachment holds a whole rigid body or the frame of an implicit body,
-    /// that body moves along.
+    /// Puts a collider or an attachment at another pose at once. Objects on the way are neither pushed nor detected.
+    /// Constant velocities continue from the new pose; keys and targets are dropped. Settings::start_overlaps applies
+    /// to new overlaps. Only the attached nodes jump, so an explicit body is deformed; throws SceneError if an element
+    /// would be inverted. If the attachment holds a rigid body or the frame of an implicit body, the whole body moves.
     void set_pose(ColliderHandle collider, const Pose& pose);
     void set_pose(AttachmentHandle attachment, const Pose& pose);
-    /// Sets the positions of all nodes of a body [m, world frame]. Velocities do not change, and attached nodes are
-    /// held at their new positions. Settings::start_overlaps applies to new overlaps. Throws SceneError if an element
-    /// would be inverted.
+    /// Sets the positions of all nodes of a body, one vector per node [m, world frame]. Velocities do not change, and
+    /// attached nodes are held at their new positions. Settings::start_overlaps applies to new overlaps. Throws
+    /// SceneError if an element would be inverted, or if a rigid body would be deformed.
     void set_positions(BodyHandle body, std::span<const Vec3> position);
-    /// Sets the velocities of all nodes of a body [m/s].
+    /// Sets the velocities of all nodes of a body, one vector per node [m/s]. A rigid body gets the rigid motion that
+    /// is nearest to these velocities.
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
-    /// Moves a body in its present shape to another pose. For a rigid body, set_positions() accepts only positions that
-    /// are a pose of the body, and set_velocities() takes the nearest rigid motion.
+    /// Moves a body in its present shape to another pose.
     void set_pose(BodyHandle body, const Pose& pose);
     /// Gives all nodes the velocities of a rigid motion about the centre of mass [m/s, rad/s].
     void set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
@@ -262,35 +265,38 @@ public:
     void reset();
     /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
     /// stay valid; handles of objects that were added to this world after the cloning become stale. However, if objects
-    /// were added to `saved` as well, such a handle may name one of them by mistake. Threads and callbacks of this
-    /// world stay. Whether forces are measured is taken from `saved`.
+    /// were added to `saved` as well, a handle of the second kind may name one of these objects by mistake. Threads and
+    /// callbacks of this world stay. From now on forces are measured if `saved` measures forces, and otherwise not.
     void reset(const World& saved);
-    /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
+    /// Sets the external forces on all nodes of a body, one vector per node [N]. They act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
     std::span<const Vec3> loads(BodyHandle body) const;  // external forces on the nodes [N]
-    /// Reads or changes a material. Bodies of this material keep their shapes and velocities and get new masses, stable
-    /// steps and clusters. Throws SceneError if the material model would change, and for values with which one of these
-    /// bodies has no stable step. The kind of smoothed elements stays as chosen by Poisson's ratio when the body was
-    /// added.
+    /// Returns the present settings of a material.
     MaterialSettings material(MaterialHandle material) const;
-    /// Replaces the settings of a material, with the effects and errors above.
+    /// Replaces the settings of a material. Bodies of this material keep their shapes and velocities and get new
+    /// masses, stable steps and clusters. Elements added as `smoothed` keep the kind that Poisson's ratio determined
+    /// when their body was added. Throws SceneError if the material model would change, if plasticity would appear or
+    /// vanish, or if a body of this material would have no stable step. Also throws if an implicit body would get a
+    /// loss factor above 0, and for elastic values, density or losses if a body has deformed plastically.
     void set_material(MaterialHandle material, const MaterialSettings& settings);
     std::vector<MaterialHandle> materials() const;   // handles in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material
-    /// Returns the values that were set for the object itself. Values that were not set are empty.
+    /// Friction and restitution that were set for a body or collider itself, and not only for its material. Values that
+    /// were not set are empty.
     SurfaceSettings surface_properties(BodyHandle body) const;
     SurfaceSettings surface_properties(ColliderHandle collider) const;
     /// Replaces the surface properties that were set for an object. See SurfaceSettings for missing values.
     void set_surface_properties(BodyHandle body, const SurfaceSettings& surface);
     void set_surface_properties(ColliderHandle collider, const SurfaceSettings& surface);
-    /// See BodySettings::collision_group.
+    /// Groups of an object, and groups with which it can collide (see BodySettings::collision_group).
     CollisionGroups collision_groups(BodyHandle body) const;
     CollisionGroups collision_groups(ColliderHandle collider) const;
     /// Sets the groups of an object, and the groups with which it collides.
     void set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask);
     void set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask);
-    /// Switches the collision of a pair on or off. Initially it is on for all pairs that the collision groups admit.
-    /// For a body with itself it sets self_contact. Settings::start_overlaps applies to a pair that is switched on.
+    /// Switches the collision of a pair of objects on or off. Initially it is on for all pairs that the collision
+    /// groups admit. If `a` and `b` are one body, sets its self-contact (BodySettings::self_contact).
+    /// Settings::start_overlaps applies to a pair that is switched on.
     void set_collision(BodyHandle a, BodyHandle b, bool on);
     void set_collision(BodyHandle body, ColliderHandle collider, bool on);
     /// True if the collision groups and the settings of set_collision() allow the two objects to collide.
@@ -314,8 +320,8 @@ public:
     /// Contacts of the last step and contacts between sleeping bodies, in a fixed order. Contacts of objects that were
     /// removed since are omitted. Empty if the last step was refused.
     std::span<const Contact> contacts() const;
-    /// Counters of the run and measures of the present state. The computation takes a pass over all bodies and
-    /// elements.
+    /// Counters of the run and measures of the present state. Each call computes the measures from all bodies and
+    /// elements, which takes time.
     WorldReport report() const;
     /// Kinetic, elastic and potential energy of all bodies now, and the energy dissipated since the start [J].
     Energy energy() const;
@@ -333,7 +339,7 @@ public:
     /// of `every`. The call comes after the step, on the thread that advances. Each such step keeps copies of the
     /// velocities, which takes some time. Pass an empty function to end the calls.
     void watch_contact_problems(std::function<void(const StepProblem&)> take, std::uint64_t every = 1);
-    /// Starts or stops recording the activity of every worker.
+    /// Starts or stops recording a trace: the time intervals in which each worker thread runs the stages of a step.
     void set_tracing(bool on);
     /// Writes the recorded trace in the Trace Event Format, which Perfetto and chrome://tracing open.
     void write_trace(std::ostream& out) const;

@@ -11,7 +11,7 @@ namespace skerry {
 struct LiveRequest {
     std::string_view method, path, query;
     std::vector<std::string_view> hosts, origins;  // values of all headers Host and Origin
-    bool upgrade = false;                          // asks for a WebSocket
+    bool upgrade = false;                          // true if the request asks for a WebSocket
 };
 
 enum class Admission {

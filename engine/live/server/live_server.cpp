@@ -114,8 +114,8 @@ int port_of(int socket, Call&& call) {
     return is_known ? ntohs(address.sin_port) : 0;
 }
 
-/// Returns the socket of a connection, for which the library has no function; -1 if it is not found. `port`: port of
-/// the server.
+/// Returns the socket of a connection; -1 if it is not found. The library has no function for this. `port`: port of the
+/// server.
 int socket_of(const mg_connection* connection, int port) {
     constexpr long most_sockets = 1 << 16;  // largest number of file descriptors to try
     const long limit = sysconf(_SC_OPEN_MAX);

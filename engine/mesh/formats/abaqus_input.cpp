@@ -9,8 +9,8 @@ bool is_comment(std::string_view line) {
     return line.empty() || line.starts_with("**");
 }
 
-/// Adds the fields of a line to `fields`. Returns true if the line ends with a comma: the row may then continue in the
-/// next line.
+/// Adds the fields of a line to `fields`. Returns true if the line ends with a comma, after which the row may continue
+/// in the next line.
 bool add_fields(std::string_view line, std::vector<std::string>& fields) {
     for (std::size_t begin = 0; begin < line.size();) {
         const std::size_t end = std::min(line.find(',', begin), line.size());

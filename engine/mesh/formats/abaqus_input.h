@@ -7,27 +7,28 @@
 
 namespace skerry::mesh {
 
-/// A keyword line such as "*ELEMENT, TYPE=C3D4, ELSET=BEAM", and the position of its data lines.
+/// A keyword line such as "*ELEMENT, TYPE=C3D4, ELSET=BEAM", and the place of the data lines that follow it.
 struct AbaqusBlock {
     std::string keyword;                           // upper case, without the asterisk
-    std::map<std::string, std::string> parameter;  // value by name in upper case; empty if none is given
+    std::map<std::string, std::string> parameter;  // value by name in upper case; an empty text if none is given
     std::size_t place = 0;                         // position of the keyword line in the file [bytes]
     std::size_t first = 0, end = 0;                // begin and end of its data lines in the file [bytes]
 
     bool has(const char* name) const { return parameter.contains(name); }
-    /// Value of the parameter `name`; empty if the parameter is missing or has none.
+    /// Value of the parameter `name`; empty if the parameter is missing or has no value.
     std::string value(const char* name) const;
 };
 
-/// Reads all keyword lines.
+/// Reads the keyword lines of the whole file.
 std::vector<AbaqusBlock> abaqus_blocks(FileReader& reader);
 
-/// Calls `take` with the fields of each row of a block. A row of fewer than `fields` fields continues in the next line
-/// if its line ends with a comma. Error messages name the block and the last line of the row.
+/// Calls `take` with the fields of each row of a block, in which commas separate the fields. A row continues in the
+/// next line if it has fewer than `fields` fields and its line ends with a comma. Error messages name the block and the
+/// last line of the row.
 void for_each_abaqus_row(FileReader& reader, const AbaqusBlock& block, std::size_t fields,
                          const std::function<void(const std::vector<std::string>&)>& take);
 
-/// Continues at the keyword line of a block, for an error message about it.
+/// Moves the reader to the keyword line of a block, so that the next error message names this line.
 void go_to_keyword(FileReader& reader, const AbaqusBlock& block);
 
 }  // namespace skerry::mesh

@@ -9,7 +9,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Nodes in the middle of edges, by the corners of the edge. The key holds the lower corner in its upper 32 bits.
+/// Indices of the nodes in the middle of edges. The key holds the lower corner of the edge in its upper 32 bits and the
+/// other corner in its lower 32 bits.
 using MiddleNodes = std::unordered_map<std::uint64_t, Index>;
 
 std::uint64_t edge_key(Index a, Index b) {
@@ -28,7 +29,7 @@ void add_parts(const std::vector<Vec3>& nodes, const std::array<Index, 4>& corne
     parts.insert(parts.end(), std::begin(at_corners), std::end(at_corners));
     struct Diagonal {
         Index first, last;
-        // A positive tetrahedron consists of both ends of the diagonal and two successive nodes of this ring.
+        // Both ends of the diagonal and two successive nodes of this ring form a tetrahedron of positive volume.
         std::array<Index, 4> around;
     };
     const std::array<Diagonal, 3> diagonals{
@@ -48,7 +49,7 @@ void add_parts(const std::array<Index, 3>& corner, const std::array<Index, 3>& m
     parts.insert(parts.end(), std::begin(all), std::end(all));
 }
 
-/// Divides every face in the sets that has middle nodes on all three edges into four faces. Other faces stay whole.
+/// Divides each face of the sets into four if all three of its edges have a node in the middle. Other faces stay whole.
 void divide_faces(const RawMesh& mesh, std::map<std::string, MeshSet>& sets) {
     if (std::ranges::all_of(sets, [](const auto& item) { return item.second.faces.empty(); })) return;
     MiddleNodes middle_of;
@@ -120,7 +121,7 @@ void divide_triangles(RawMesh& mesh) {
     mesh.triangle_middle.clear();
 }
 
-/// Returns the node in the middle of an edge, which the first call for the edge adds to the mesh.
+/// Returns the node in the middle of an edge. The first call for an edge adds this node to the mesh.
 Index middle_node(Index a, Index b, RawMesh& mesh, MiddleNodes& middle_nodes) {
     const auto [place, added] = middle_nodes.try_emplace(edge_key(a, b), static_cast<Index>(mesh.nodes.size()));
     if (added)

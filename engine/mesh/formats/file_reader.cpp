@@ -122,7 +122,8 @@ Real FileReader::parse_real(std::string_view text, const char* field) const {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
         complain(field, in_quotes(text), "a number");
-    // If the number is out of range, strtod returns zero for too small numbers and infinity for too large ones.
+    // std::from_chars leaves `value` unchanged if the number is out of range. std::strtod gives zero or a subnormal
+    // number if it is too small, and infinity if it is too large.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
     return value;
 }
@@ -190,7 +191,7 @@ bool FileReader::skip_behind(std::string_view mark) {
 
 std::size_t FileReader::checked_count(std::int64_t count, std::size_t bytes, const char* field) const {
     if (count < 0) complain(field, std::to_string(count), "a count >= 0");
-    // The last row of the file may lack its line end, so one more row may fit than the number of bytes suggests.
+    // The last row needs no line end at the end of the file, so one more row may fit than the bytes suggest.
     const std::size_t fits = remaining() / bytes + 1;
     if (static_cast<std::uint64_t>(count) > fits)
         complain(field, std::to_string(count), "at most " + std::to_string(fits),

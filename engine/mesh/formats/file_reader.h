@@ -1,5 +1,5 @@
-// Reads a file that was loaded into memory, from start to end: lines, words, and numbers in text or binary form. Error
-// messages name the position in the file.
+// Reader of a file that is loaded into memory as a whole. It reads lines, words and numbers, in text or binary form,
+// one after the other. Error messages name the position in the file.
 #pragma once
 
 #include <bit>
@@ -13,7 +13,7 @@
 
 namespace skerry::mesh {
 
-/// Type of binary numbers, for formats in which a file names the types of its numbers.
+/// Type of binary numbers, for formats in which the file itself states the types of its numbers.
 enum class NumberKind { bit, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 struct NumberType {
     NumberKind kind;
@@ -32,7 +32,7 @@ public:
     std::string_view rest() const { return std::string_view(data_).substr(position_); }
     /// Position in the file, counted from its start [bytes].
     std::size_t position() const { return position_; }
-    /// Continues at a position. Error messages then name the line of this position.
+    /// Moves the reader to a position. Until the next item is read, error messages name the line of this position.
     void go_to(std::size_t position) {
         position_ = start_ = position < data_.size() ? position : data_.size();
         last_was_binary_ = false;
@@ -53,16 +53,17 @@ public:
     bool at_end() const;
     /// Returns the next line, without its line end and surrounding white space.
     std::string_view line();
-    /// Returns the next line that is not empty. At the end of the file: throws SceneError that `expected` is missing.
+    /// Returns the next line that is not empty. At the end of the file throws SceneError, which says that `expected` is
+    /// missing.
     std::string_view filled_line(const char* expected);
-    /// Splits a line into words. The returned list is valid until the next call.
+    /// Splits a line into words. The next call of words_of() overwrites the returned list.
     const std::vector<std::string_view>& words_of(std::string_view line);
 
     // Words and numbers of text.
     // ---------------------------------------------------------------------------------------------------
 
-    /// Skips white space and line ends, then returns the next word. At the end of the file: throws SceneError that
-    /// `expected` is missing.
+    /// Skips white space and line ends, then returns the next word. At the end of the file throws SceneError, which
+    /// says that `expected` is missing.
     std::string_view word(const char* expected);
     /// Returns the word that word() would return, without changing the position; empty at the end of the file.
     std::string_view peek_word() const;
@@ -84,8 +85,9 @@ public:
         return value;
     }
     void skip_bytes(std::size_t count, const char* field);
-    /// Continues behind the next occurrence of `mark` that white space or the end of the file follows. Binary numbers
-    /// may precede `mark` directly. Returns false and keeps the position if there is no such occurrence.
+    /// Moves the reader to the byte after the next `mark` that is followed by white space or the end of the file.
+    /// Binary numbers may stand directly before `mark`. Returns false and does not move the reader if there is no such
+    /// `mark`.
     bool skip_behind(std::string_view mark);
 
     // Numbers of formats that have a text form and a binary form.
@@ -93,7 +95,7 @@ public:
 
     /// Sets whether real() and integer() read binary numbers. Until the first call they read words of text.
     void set_binary(bool binary) { binary_ = binary; }
-    /// Reads the next number. `type`: type of the number if the file is binary; must not be `bit`.
+    /// Reads the next number. `type`: type of the number in a binary file (not used in a text file); must not be `bit`.
     Real real(const NumberType& type, const char* field);
     /// Reads the next number. Throws SceneError if it is not an integer.
     std::int64_t integer(const NumberType& type, const char* field);
@@ -101,15 +103,15 @@ public:
     // Checks.
     // -----------------------------------------------------------------------------------------------------------------
 
-    /// Checks a number of rows that was read from the file: it must not be negative, and that many rows of at least
-    /// `bytes` bytes must fit into the rest of the file. The count must also be below 2^29. With this check a wrong
-    /// count cannot make the program allocate more than a small multiple of the file size.
+    /// Returns a row count that was read from the file. Throws SceneError if the count is negative or at least 2^29, or
+    /// if the rest of the file is too short for so many rows of at least `bytes` bytes. Without this check a wrong
+    /// count could make the program allocate far more memory than the file has bytes.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
     /// Throws SceneError unless the number is finite.
     Real finite(Real value, const char* field) const;
 
-    /// Throws SceneError that names the file, section, row, line (or byte), field, and the found and the expected
-    /// value.
+    /// Throws SceneError. Its message names the file, the section, the row, the line (binary numbers: the byte),
+    /// `field`, and the found and the expected value.
     [[noreturn]] void complain(std::string field, std::string found, std::string expected, std::string hint = {}) const;
 
 private:
@@ -120,7 +122,7 @@ private:
     const char* row_kind_ = nullptr;
     std::size_t row_number_ = 0, row_count_ = 0;
     std::size_t position_ = 0;
-    std::size_t start_ = 0;  // position of the last item read, for error messages
+    std::size_t start_ = 0;  // position at which the last item read begins, for error messages
     bool last_was_binary_ = false;
     bool foreign_bytes_ = false;
     bool binary_ = false;

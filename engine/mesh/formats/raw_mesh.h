@@ -16,11 +16,12 @@
 
 namespace skerry::mesh {
 
-// Both corners of each edge of a tetrahedron, in the order in which RawMesh::middle lists the nodes in the middle of
-// the edges. The first three entries are also the edges of a triangle.
+// Both corners of each edge of a tetrahedron. RawMesh::middle lists the nodes in the middle of the edges in the order
+// of these edges. The first three entries are also the edges of a triangle.
 constexpr std::array<std::array<std::size_t, 2>, 6> second_order_edges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-// Rows that stand for a linear element in RawMesh::middle and RawMesh::triangle_middle.
+// Entries of RawMesh::middle and RawMesh::triangle_middle for a linear element, which has no nodes in the middle of
+// edges.
 constexpr std::array<Index, 6> linear_tetrahedron{no_index, no_index, no_index, no_index, no_index, no_index};
 constexpr std::array<Index, 3> linear_triangle{no_index, no_index, no_index};
 
@@ -28,15 +29,15 @@ constexpr std::array<Index, 3> linear_triangle{no_index, no_index, no_index};
 struct RawMesh {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 4>> tetrahedra;
-    // Middle nodes of each tetrahedron, in the order of `second_order_edges`; `linear_tetrahedron` if it is linear. The
-    // list may be shorter than `tetrahedra`; the remaining tetrahedra are linear.
+    // Nodes in the middle of the edges of each tetrahedron, in the order of `second_order_edges`; `linear_tetrahedron`
+    // for a linear one. The list may be shorter than `tetrahedra`; the tetrahedra beyond its end are linear.
     std::vector<std::array<Index, 6>> middle;
     std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
     std::vector<std::array<Index, 3>> triangle_middle;  // like `middle`, for the triangles
-    std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
-    std::map<std::string, MeshSet> sets;                // faces have 3 corners, also those of second order
-    std::map<std::string, std::vector<Vec3>> vectors;   // by name; one vector for each tetrahedron
+    std::size_t curved_triangles = 0;                   // number of ignored triangles of third or higher order
+    std::map<std::string, MeshSet> sets;                // named sets; also faces of second order have only 3 nodes here
+    std::map<std::string, std::vector<Vec3>> vectors;   // vector fields by name, one vector per tetrahedron
     // for an .obj or .ply file: texture coordinates and names of materials, and the indices of each triangle into both
     // lists
     VisualSurface visual;
@@ -66,7 +67,7 @@ private:
     std::unordered_map<std::int64_t, Index> row_;
 };
 
-/// Converts a number from a file to a label. Returns nothing unless the number is a whole number that fits 32 bits.
+/// Converts a number from a file to a label. Returns nothing if the number is not whole or does not fit 32 bits.
 std::optional<int> as_label(Real number);
 
 /// Throws SceneError if an element uses a node twice.
@@ -82,14 +83,15 @@ void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMe
 void add_middle_nodes(RawMesh& mesh);
 
 /// Divides each tetrahedron of second order into eight linear ones, and each triangle of second order into four. The
-/// parts use all nodes of the divided element, and have its labels, vectors and sets. Adds a sentence to `notes`.
+/// parts use all nodes of the divided element. They get its label and its vectors, and replace it in its sets. Adds a
+/// sentence about the division to `notes`.
 void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
-/// Adds a polygon of a file that has only a surface. Like add_polygon, but triangles that use a node twice are left out
-/// and counted in the mesh. Returns, for each triangle that was added, the index i in `nodes` of its second corner; its
-/// third corner is nodes[i + 1].
+/// Adds a polygon of a file that has only a surface. Divides the polygon like add_polygon(), but leaves out triangles
+/// that use a node twice, and counts them in `flat_triangles`. Returns an index i for each added triangle, whose
+/// corners are nodes[0], nodes[i] and nodes[i + 1].
 std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.
@@ -106,7 +108,7 @@ std::vector<VisualMaterial> read_mtl(FileReader& reader);
 RawMesh read_ply(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 
-/// True if files with the extension of this path have triangles but no tetrahedra (read.cpp).
+/// True if files with the extension of this path have triangles but no tetrahedra. Defined in read.cpp.
 bool is_surface_format(const std::string& path);
 
 }  // namespace skerry::mesh

@@ -13,7 +13,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Number of nodes of an element type. For types that are not read it is 0, and `name` is a plural noun for messages.
+/// Number of nodes of an element type. If elements of the type are not read, the number is 0, and `name` is a plural
+/// noun for messages.
 struct AbaqusKind {
     std::size_t nodes = 0;
     std::string name{};
@@ -48,8 +49,8 @@ AbaqusKind kind_of(const std::string& type) {
 struct AbaqusScope {
     std::string prefix{};  // first part of the names of its sets, for example "Part-1-1."
     std::size_t first_node = 0;
-    NodeNumbers nodes{};  // a row of NodeNumbers plus first_node is an index in mesh_.nodes
-    std::unordered_map<std::int64_t, std::size_t> element{};  // index in elements_ by the number in the file
+    NodeNumbers nodes{};  // NodeNumbers::row() plus first_node is the index of a node in mesh_.nodes
+    std::unordered_map<std::int64_t, std::size_t> element{};  // index in elements_ by the number of an element
 };
 
 struct AbaqusElement {
@@ -61,7 +62,7 @@ struct AbaqusElement {
 /// A set of nodes or of elements.
 struct AbaqusSet {
     std::string name{};
-    bool internal = false;               // has the parameter INTERNAL; the mesh does not get it
+    bool internal = false;               // has the parameter INTERNAL; such a set is left out of the mesh
     std::vector<std::size_t> members{};  // indices in mesh_.nodes, or in elements_
 };
 
@@ -82,16 +83,16 @@ public:
     }
 
 private:
-    /// Blocks of one scope (see AbaqusScope), and the block *INSTANCE that holds the translation and rotation of its
-    /// nodes.
+    /// Blocks of one scope (see AbaqusScope). For an instance of a part, `pose` is its block *INSTANCE, with the
+    /// translation and the rotation of the nodes.
     struct Instance {
         std::string prefix{};
         std::vector<const AbaqusBlock*> blocks{};
         const AbaqusBlock* pose = nullptr;  // null: the nodes are not moved
     };
 
-    /// Refuses keywords and parameters by which a file defines nodes, elements or sets without listing them, and
-    /// coordinates that are not Cartesian.
+    /// Refuses keywords and parameters with which a file generates or includes nodes, elements or sets instead of
+    /// listing them. Also refuses coordinates that are not Cartesian.
     void require_plain(const AbaqusBlock& block) {
         static const std::set<std::string> makers{"NGEN",  "NFILL",  "NCOPY",  "NMAP",
                                                   "ELGEN", "ELCOPY", "SYSTEM", "INCLUDE"};
@@ -251,7 +252,7 @@ private:
     }
 
     /// Converts a number in the file to the index of a node in mesh_.nodes if `sets` is node_sets_, otherwise to the
-    /// index of an element in elements_. Throws SceneError if there is none.
+    /// index of an element in elements_. Throws SceneError if no node or element has this number.
     std::size_t member(const std::string& number, const AbaqusScope& scope, const Sets& sets) {
         if (&sets == &node_sets_)
             return scope.first_node +
@@ -262,8 +263,8 @@ private:
         return found->second;
     }
 
-    /// Adds the members that an entry of a row names: a number, or the name of an earlier set. The name of an instance
-    /// and a dot may precede the number or the name.
+    /// Appends to `to` the members that an entry of a row names: a single one by its number, or all members of an
+    /// earlier set by the name of the set. The name of an instance and a dot may precede the number or the name.
     void add_members(const std::string& entry, const AbaqusScope& scope, const Sets& sets,
                      std::vector<std::size_t>& to) {
         const auto begins_number = [](std::string_view text) {
@@ -322,8 +323,8 @@ private:
         set.members.insert(set.members.end(), members.begin(), members.end());
     }
 
-    /// Adds the members whose numbers a row of *NSET or *ELSET with GENERATE describes: first number, last number, and
-    /// increment (1 if it is missing).
+    /// Appends to `to` the members that a row of *NSET or *ELSET with the parameter GENERATE describes by three
+    /// numbers: first member, last member, and increment (1 if it is missing).
     void add_range(const std::vector<std::string>& row, const AbaqusScope& scope, const Sets& sets,
                    std::vector<std::size_t>& to) {
         if (row.size() < 2 || row.size() > 3)
@@ -338,7 +339,7 @@ private:
             to.push_back(member(std::to_string(number), scope, sets));
     }
 
-    /// Value of `parameter`, which names an object. Throws SceneError if it is missing or empty.
+    /// Value of a parameter that must give a name. Throws SceneError if the parameter is missing or empty.
     std::string named(const AbaqusBlock& block, const char* parameter) {
         const std::string name = block.value(parameter);
         if (name.empty()) {
@@ -369,8 +370,8 @@ private:
         });
     }
 
-    /// Adds a face of an element to a surface. `label`: S1 to S4 for a face of a tetrahedron. A tetrahedron without a
-    /// label is listed as a whole, and take_surfaces() selects its faces.
+    /// Adds a face of an element to a surface. `label` selects the face of a tetrahedron: S1 to S4. Without a label the
+    /// tetrahedron is listed as a whole, and take_surfaces() later selects its faces on the boundary.
     void add_face(const AbaqusElement& element, const std::string& label, MeshSet& surface) {
         constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
         const auto row = static_cast<std::size_t>(element.row);
@@ -416,8 +417,8 @@ private:
             if (!set.internal) mesh_.sets[set.name].nodes.assign(set.members.begin(), set.members.end());
     }
 
-    /// Adds the element sets to the mesh. An element set replaces a node set of the same name if its elements have
-    /// exactly these nodes. If they have other nodes, "_elements" is appended to the name of the element set.
+    /// Adds the element sets to the mesh. If a node set of the same name consists of exactly the nodes of the elements,
+    /// the element set replaces it. If it has other nodes, "_elements" is appended to the name of the element set.
     void take_element_sets() {
         for (const auto& [key, set] : element_sets_) {
             if (set.internal) continue;
@@ -442,8 +443,8 @@ private:
         }
     }
 
-    /// Adds the surfaces that were read to the mesh. If a surface lists whole tetrahedra, it gets those of their faces
-    /// that are on the boundary of the mesh.
+    /// Adds the surfaces of the file to the mesh. For a tetrahedron that a surface lists as a whole, adds its faces on
+    /// the boundary of the mesh.
     void take_surfaces() {
         const bool whole =
             std::ranges::any_of(surfaces_, [](const auto& item) { return !item.second.tetrahedra.empty(); });

@@ -68,8 +68,8 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
     rows.clear();
     for (const std::int64_t number : node_numbers) rows.push_back(numbers.row(number, reader));
     if (type == 11) std::swap(rows[8], rows[9]);  // Gmsh lists the middle of edge 23 before that of edge 13
-    // In version 2, a tetrahedron that belongs to several groups has one row for each group. These rows follow each
-    // other.
+    // In version 2, a tetrahedron that belongs to several groups has a row for each group. These rows follow each
+    // other; `again` is true for all but the first.
     const bool again = is_gmsh_tetrahedron(type) && !mesh.tetrahedra.empty() &&
                        std::ranges::equal(mesh.tetrahedra.back(), std::span(rows).first(4)) &&
                        mesh.tags.back().elementary == tags.elementary && mesh.tags.back().physical != tags.physical;
@@ -148,13 +148,14 @@ void require_end(FileReader& reader, const std::string& mark) {
                         "if the section has more rows than its header announces, correct the count in the header");
 }
 
-/// Sets the labels of the tetrahedra to the numbers of their physical groups, which users choose. If no tetrahedron is
-/// in a group, the labels are the numbers of the geometric volumes. Sets no labels if a number exceeds 32 bits.
+/// Sets the label of each tetrahedron to the number of its physical group, because users choose these numbers. If no
+/// tetrahedron is in a group, the labels are the numbers of the geometric volumes. Sets no labels at all if one of the
+/// numbers does not fit 32 bits.
 void label(GmshMesh& mesh) {
     const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
     std::vector<int> labels;
     for (const GmshTags& tags : mesh.tags) {
-        // a negative group number only means that the orientation is reversed
+        // a group with a negative number is the group of the positive number; the sign only reverses the orientation
         const Real tag = static_cast<Real>(grouped ? tags.physical : tags.elementary);
         const std::optional<int> number = as_label(grouped ? std::abs(tag) : tag);
         if (!number) return;
@@ -163,8 +164,8 @@ void label(GmshMesh& mesh) {
     mesh.label = std::move(labels);
 }
 
-/// Adds the physical groups and GmshMesh::flagged to the sets of the mesh. A group without a name is called after its
-/// dimension and number. A volume without a name gives no set, because its number is a label.
+/// Adds the physical groups and GmshMesh::flagged to the sets of the mesh. A group without a name is named after its
+/// dimension and number. A group of volumes without a name gives no set, because its number is already a label.
 void name_groups(GmshMesh& mesh) {
     constexpr std::array<const char*, 3> kinds{"point_", "curve_", "surface_"};
     for (auto& [group, set] : mesh.groups) {

@@ -8,8 +8,8 @@
 
 namespace skerry::mesh {
 
-/// Numbers that the file gives to the physical group of an element (0: none), to its elementary (geometric) entity, and
-/// to the element itself.
+/// Numbers that the file gives to an element: `physical` of its physical group (0: none), `elementary` of its geometric
+/// entity, and `number` of the element itself.
 struct GmshTags {
     std::int64_t physical = 0, elementary = 0, number = 0;
 };
@@ -20,13 +20,13 @@ using GmshEntity = std::pair<std::int64_t, std::int64_t>;
 /// Map from geometric entities to the numbers of their physical groups.
 using GmshEntities = std::map<GmshEntity, std::vector<std::int64_t>>;
 
-/// A mesh with the group numbers of its tetrahedra.
+/// A mesh that is being read from a Gmsh file, with the groups of its elements. `tags` has one entry per tetrahedron.
 struct GmshMesh : RawMesh {
     std::vector<GmshTags> tags;
     std::map<GmshEntity, MeshSet> groups;           // elements of each physical group
     std::map<GmshEntity, std::string> group_names;  // names of physical groups that have one
-    // for each view of element data that has only the values 0 and 1: its name, and the numbers of the elements with
-    // the value 1
+    // Names of the views (data on elements) that have only the values 0 and 1. Each name has the list of the numbers of
+    // those elements that have the value 1.
     std::map<std::string, std::vector<std::int64_t>> flagged;
     std::vector<Index> element_rows;  // nodes of the element that is being read
 };
@@ -44,7 +44,7 @@ void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMes
 void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, GmshMesh& mesh);
 
 /// The next three functions read the sections of version 4.1. read_gmsh4_entities reads $Entities and returns the
-/// physical groups of all entities that are in groups.
+/// physical groups of each geometric entity that is in a group.
 GmshEntities read_gmsh4_entities(FileReader& reader, bool binary);
 void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, GmshMesh& mesh);
 void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshEntities& entities,
@@ -54,9 +54,10 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
 /// higher order.
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
-/// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. In either case, adds the
-/// element to the physical groups with the numbers `groups`, and throws SceneError if one of its nodes does not exist.
-/// A tetrahedron that repeats the last one for another group is not added again.
+/// Adds a tetrahedron or triangle to the mesh, and counts an element of another type. Adds the tetrahedron, the
+/// triangle or (for another type) the nodes to the physical groups with the numbers `groups`. If a tetrahedron is in
+/// several groups, version 2 has a row for each of them; the later rows do not add the tetrahedron again. Throws
+/// SceneError if one of the nodes does not exist.
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
                        GmshMesh& mesh);

@@ -57,8 +57,8 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
 
 namespace {
 
-/// Number of the physical group of an element; empty if it is in no group. A negative number in the file only means
-/// that the orientation is reversed.
+/// Returns the number of the physical group of an element, or nothing if the element is in no group. A negative number
+/// in the file means the group of the positive number; the sign only reverses the orientation.
 std::vector<std::int64_t> group_of(const GmshTags& tags) {
     if (tags.physical == 0) return {};
     return {tags.physical < 0 ? -tags.physical : tags.physical};
@@ -112,8 +112,8 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh
                       reader, mesh);
 }
 
-/// Reads a block: one header, followed by elements of one type with equally many tags each. Returns the number of
-/// elements.
+/// Reads a block of a binary file: a header, then elements that all have the type and the number of tags given in the
+/// header. Returns the number of elements.
 std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers,
                               GmshMesh& mesh) {
     const auto type = reader.binary<std::int32_t>("type");

@@ -11,8 +11,8 @@ namespace {
 
 using Numbers4 = std::array<std::int64_t, 4>;
 
-/// Reads four integers: in a text file from one line, in a binary file with the given size of each integer (4 or 8
-/// bytes).
+/// Reads four integers. In a text file they stand on one line. In a binary file `sizes` gives the size of each (4 or 8)
+/// [bytes].
 Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& sizes, const char* field,
                    const char* meaning) {
     Numbers4 numbers;
@@ -27,8 +27,8 @@ Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& si
     return numbers;
 }
 
-/// Reads the header of section $Nodes or $Elements: number of blocks, number of nodes (elements), and the smallest and
-/// the largest number of a node (element).
+/// Reads the header of the section $Nodes (or $Elements): number of blocks, number of nodes (elements), smallest number
+/// of a node (element), and largest number.
 Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_bytes) {
     const Numbers4 header =
         read_four(reader, binary, {8, 8, 8, 8}, "header",
@@ -38,8 +38,8 @@ Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_by
     return header;
 }
 
-/// Reads the header of a block of nodes or elements: the dimension and tag of the entity, the parametric flag (nodes)
-/// or the element type (elements), and the number of rows.
+/// Reads the header of a block: dimension of the geometric entity, its tag, parametric flag (for nodes) or element type
+/// (for elements), and number of rows.
 Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning) {
     const Numbers4 block = read_four(reader, binary, {4, 4, 4, 8}, "block header", meaning);
     if (block[0] < 0 || block[0] > 3) reader.complain("dimension", std::to_string(block[0]), "0 to 3");
@@ -77,9 +77,9 @@ void require_total(const FileReader& reader, std::size_t found, std::int64_t ann
                         "the blocks of this section announce that many rows in total; the header must agree");
 }
 
-/// Reads a block of `rows` nodes: first their numbers, by which `range` is extended, then their positions. Each
-/// position is followed by `parameters` parametric coordinates, which are skipped. `total`: number of nodes of the
-/// file.
+/// Reads a block of `rows` nodes: first the numbers of all nodes, then their positions. Each position is followed by
+/// `parameters` parametric coordinates, which are skipped. `range`: smallest and largest node number so far, to be
+/// updated. `total`: number of nodes in the file.
 void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total,
                      NodeNumbers& numbers, std::array<std::int64_t, 2>& range, GmshMesh& mesh) {
     const std::size_t first = mesh.nodes.size();
@@ -140,7 +140,8 @@ GmshEntities read_gmsh4_entities(FileReader& reader, bool binary) {
                 binary ? void(reader.binary<double>("position")) : void(row_word(reader, "a coordinate"));
             std::vector<std::int64_t> groups = read_tags(reader, binary);
             if (dimension > 0) read_tags(reader, binary);  // skips the tags of the entity's boundary
-            // a negative group number only means that the orientation is reversed
+            // a group with a negative number is the group of the positive number; the sign only reverses the
+            // orientation
             for (std::int64_t& group : groups) group = group < 0 ? -group : group;
             if (!groups.empty()) entities[{static_cast<std::int64_t>(dimension), tag}] = std::move(groups);
         }

@@ -199,8 +199,8 @@ private:
         return static_cast<Index>(number - 1);
     }
 
-    /// Checks that the nodes of second-order elements have the order of RawMesh::middle. Each row of the section holds
-    /// the barycentric coordinates of one node, times two.
+    /// Checks that the nodes of second-order elements have the order of RawMesh::middle. Each row of the section
+    /// describes one node by its barycentric coordinates times two, which are integers.
     void require_order(std::size_t nodes, std::size_t count) {
         const std::size_t corners = nodes == 10 ? 4 : 3;
         for (std::size_t i = 0; i < count; ++i) {

@@ -9,7 +9,7 @@ namespace skerry::mesh {
 namespace {
 
 /// Reads the number of a node or of a texture point, and returns its index. `rows`: number of nodes or texture points
-/// so far. Number 1 is the first of them, -1 the last.
+/// defined so far. The number 1 means the first of them, -1 the last.
 Index parse_number(const FileReader& reader, std::string_view text, const char* field, std::size_t rows) {
     const std::int64_t number = reader.parse_integer(text, field);
     const auto count = static_cast<std::int64_t>(rows);
@@ -23,7 +23,7 @@ Index parse_number(const FileReader& reader, std::string_view text, const char* 
     return static_cast<Index>(row);
 }
 
-/// The part of a corner such as "7/2/3" behind its first slash and before its second slash: the texture point.
+/// Text of the number of the texture point in a corner such as "7/2/3": the part between the first and second slash.
 std::string_view texture_part(std::string_view corner) {
     const std::size_t slash = corner.find('/');
     if (slash == std::string_view::npos) return {};
@@ -31,7 +31,7 @@ std::string_view texture_part(std::string_view corner) {
     return corner.substr(0, corner.find('/'));
 }
 
-/// Reads `N` numbers that follow the key of a line.
+/// Reads the `N` numbers after the first word (the key) of a line.
 template <std::size_t N>
 std::array<Real, N> parse_reals(const FileReader& reader, const std::vector<std::string_view>& words, const char* field,
                                 const char* noun) {
@@ -43,7 +43,7 @@ std::array<Real, N> parse_reals(const FileReader& reader, const std::vector<std:
     return values;
 }
 
-/// The text of a line behind its first word `key`, such as a name with spaces.
+/// Text of a line after its first word `key`. It may contain spaces, for example in the name of a file.
 std::string rest_of(std::string_view line, std::string_view key) {
     line.remove_prefix(key.size());
     const std::size_t begin = line.find_first_not_of(" \t");
@@ -124,12 +124,13 @@ std::vector<VisualMaterial> read_mtl(FileReader& reader) {
         if (key == "d" && words.size() == 2)
             material.opacity = std::clamp<Real>(parse_reals<1>(reader, words, "d", "numbers")[0], 0, 1);
         if (key == "Tr") {
-            // some programs write the opacity here: a value of 1 would make the surface invisible, so it is ignored
+            // Some programs write the opacity here, usually 1. As a transparency, 1 would make the surface invisible,
+            // so it is ignored.
             const Real transparency = parse_reals<1>(reader, words, "Tr", "numbers")[0];
             if (transparency < 1) material.opacity = std::clamp<Real>(1 - transparency, 0, 1);
         }
         if (key == "map_Kd") {
-            // options such as "-s 1 1 1" precede the name of the file
+            // Options such as "-s 1 1 1" may precede the name of the file, which is then the last word.
             const std::string file =
                 words.size() > 1 && words[1].front() == '-' ? std::string(words.back()) : rest_of(line, key);
             if (!file.empty()) material.texture = (std::filesystem::path(reader.path()).parent_path() / file).string();

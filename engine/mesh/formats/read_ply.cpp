@@ -99,7 +99,9 @@ private:
 
     void read_element(const PlyElement& element) {
         reader_.set_section(element.name);
-        std::size_t bytes = 0;  // least bytes that a row needs in the file: a text value takes a digit and a separator
+        // Lower limit of the size of a row in the file [bytes]. In text each value needs at least a digit and a
+        // separator.
+        std::size_t bytes = 0;
         for (const PlyProperty& property : element.properties)
             bytes += binary_ ? (property.count_type ? *property.count_type : property.type).size : 2;
         const std::size_t rows = reader_.checked_count(element.count, std::max<std::size_t>(bytes, 1), "count");

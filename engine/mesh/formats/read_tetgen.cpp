@@ -46,8 +46,8 @@ void require_words(const FileReader& reader, std::size_t found, std::size_t leas
                 " numbers: " + meaning);
 }
 
-/// Name of a temporary set that collects the nodes or faces with the marker 0, which means "not marked". The set is
-/// deleted after reading.
+/// Name of a temporary set for nodes or faces with the marker 0, which means "not marked". The set is deleted after
+/// reading.
 constexpr const char* no_marker = "";
 
 /// Returns the set for the marker `word`, and adds it to the mesh if it is new. `kind`: beginning of the name of the
@@ -88,9 +88,9 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     require_end(reader, "nodes");
 }
 
-/// Entry a is the index that node a of a .ele row has in the node order of this engine: four corners, then
-/// RawMesh::middle. With its option -o2 TetGen lists the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20
-/// after the corners (its tables edge2ver, orgpivot and destpivot).
+/// Conversion of the node order of a row of the file .ele: tetgen_order[a] is the index of its node a in the order of
+/// this engine, which is the four corners, then RawMesh::middle. With its option -o2 TetGen lists the nodes in the
+/// middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its tables edge2ver, orgpivot and destpivot).
 constexpr std::array<std::size_t, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
@@ -137,8 +137,8 @@ void read_faces(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
     for (std::size_t i = 0; i < count && markers == 1; ++i) {
         reader.set_row("face", i + 1, count);
         const std::vector<std::string_view>& words = node_row_words(reader, "number, nodes and marker of a face");
-        // In a mesh of second order, the three nodes in the middle of the edges precede the marker. With the option -nn
-        // TetGen writes two neighbouring tetrahedra after it.
+        // In a mesh of second order, the three nodes in the middle of the edges stand before the marker. With the
+        // option -nn TetGen writes the two tetrahedra at the face after the marker.
         require_words(reader, words.size(), 5, 10, "number, three or six nodes, marker and neighbours of a face");
         std::array<Index, 3> nodes;
         for (std::size_t a = 0; a < 3; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);

@@ -6,8 +6,8 @@
 
 #include "engine/mesh/formats/vtk_cells.h"
 
-// Reader of legacy VTK files. Format: "VTK File Formats", VTK user's guide. Since file version 5.1, cells have the
-// separate lists OFFSETS and CONNECTIVITY.
+// Reader of legacy VTK files. Format: "VTK File Formats", VTK user's guide. Since file version 5.1, a section of cells
+// has two separate lists, OFFSETS and CONNECTIVITY.
 namespace skerry::mesh {
 namespace {
 
@@ -165,8 +165,8 @@ private:
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = reader_.integer(type, "node count");
-            // Number of integers that the section has left, according to `size` in its header. So far c + 1 node counts
-            // and all nodes of the cells before have been read.
+            // Number of integers that are left in the section according to `size` in its header. So far the node counts
+            // of the cells 0 to c and the nodes of the cells 0 to c - 1 have been read.
             const std::size_t remaining = size - std::min(size, cells_.offset.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > remaining)
                 reader_.complain(
@@ -248,9 +248,9 @@ private:
         cells_.offset.assign(1, 0);
     }
 
-    /// Reads the data arrays of points or cells; read_array() says which of them are stored. Returns true if another
-    /// section of data follows. Returns false if reading can stop: at the end of the file, or at unknown content, after
-    /// which no mesh data follow.
+    /// Reads the data arrays of points or cells; read_array() decides which of them are stored. Returns true if another
+    /// section of data follows. Returns false if no mesh data can follow: at the end of the file, or at unknown
+    /// content.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
         const std::size_t rows = of_cells ? cells_.type.size() : mesh_.nodes.size();
@@ -278,7 +278,8 @@ private:
         if (keyword == "FIELD") return read_field_data(rows, of_cells);
         if (keyword == "COLOR_SCALARS" || keyword == "LOOKUP_TABLE") {
             const std::size_t count = read_count("count", 1);
-            // Skips bytes in a binary file and words in a text file, where a colour component is a fraction.
+            // skip_array() skips a byte per value in a binary file, and a word per value in a text file, in which a
+            // colour component is a fraction.
             return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
                               {NumberKind::uint8, 1});
         }

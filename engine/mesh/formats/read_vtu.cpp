@@ -42,7 +42,7 @@ private:
         const XmlTag file = next_tag(reader_);
         if (file.name != "VTKFile") complain(file, {}, "the tag " + in_quotes(file.name), "<VTKFile ...>");
         read_form(file);
-        // section to which the next arrays belong: Points, Cells, CellData, PointData or FieldData
+        // name of the tag around the next arrays: Points, Cells, CellData, PointData or FieldData
         std::string section;
         while (true) {
             const XmlTag tag = next_tag(reader_);
@@ -193,7 +193,8 @@ private:
         }
     }
 
-    /// Adds the labels of the cells of a piece, if the piece has an array of labels that are whole numbers.
+    /// Adds the labels of the cells of a piece. Uses the first array that is named like labels and has only whole
+    /// numbers.
     void take_labels(const Piece& piece, std::size_t count) {
         for (const VtkXmlArray& array : piece.cell_data) {
             const std::string_view components = array.tag.value_of("NumberOfComponents", "1");
@@ -208,7 +209,8 @@ private:
     }
 
     /// Appends each array of whole numbers of a piece to the array of the same name in `all`. `before`: number of
-    /// points or cells of earlier pieces. An array that an earlier piece lacks is ignored, because it would have gaps.
+    /// points or cells of earlier pieces. Ignores an array that an earlier piece lacks, because it would have no values
+    /// there.
     void take_data(const std::vector<VtkXmlArray>& arrays, std::size_t count, std::size_t before,
                    std::vector<VtkArray>& all) {
         for (const VtkXmlArray& array : arrays) {
@@ -225,8 +227,8 @@ private:
         }
     }
 
-    /// Appends the vectors of the cells of a piece to cells_.vectors. `before`: number of cells of earlier pieces. An
-    /// array that an earlier piece lacks is ignored.
+    /// Appends the vectors of the cells of a piece to cells_.vectors. `before`: number of cells of earlier pieces.
+    /// Ignores an array that an earlier piece lacks, because it would have no values there.
     void take_vectors(const Piece& piece, std::size_t count, std::size_t before) {
         for (const VtkXmlArray& array : piece.cell_data) {
             if (array.tag.value_of("NumberOfComponents", "1") != "3") continue;

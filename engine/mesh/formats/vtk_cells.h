@@ -10,7 +10,7 @@
 
 namespace skerry::mesh {
 
-/// A data array of points or cells with one whole number each.
+/// A data array with one whole number for each point or each cell.
 struct VtkArray {
     std::string name;
     std::vector<int> value;
@@ -24,14 +24,15 @@ struct VtkCells {
     std::vector<std::int64_t> type;
     std::vector<int> label;  // label of each cell; empty: no labels
     std::vector<VtkArray> point_data, cell_data;
-    // by array name: a vector for each cell; an array with fewer vectors is ignored
+    // vector arrays by name, one vector per cell; an array with fewer vectors is ignored
     std::map<std::string, std::vector<Vec3>> vectors;
 };
 
 /// True if cell data of this name are labels.
 bool is_vtk_label(std::string_view name);
 
-/// Adds the sets that the data arrays describe to a mesh that already has its tetrahedra. See mesh::read for the rules.
+/// Adds to a mesh the sets that the data arrays describe by the rules of mesh::read. The mesh must already have its
+/// tetrahedra.
 void take_vtk_sets(const VtkCells& cells, RawMesh& mesh);
 
 /// Adds the tetrahedra and triangles to the mesh, and counts the cells of other kinds.

@@ -41,14 +41,14 @@ void read_attributes(std::string_view text, XmlTag& tag, const FileReader& reade
     }
 }
 
-/// Reads the bytes of an array in sequence. In the file they are raw or encoded in base64. Base64 may be padded in the
-/// middle, because some programs encode the header of an array separately.
+/// Returns the bytes of an array piece by piece. In the file they are raw or encoded in base64. Base64 may have padding
+/// also before its end, because some programs encode the header of an array separately.
 class ByteSource {
 public:
     ByteSource(std::string_view from, bool base64, const char* field, const FileReader& reader)
         : from_(from), base64_(base64), field_(field), reader_(reader) {}
 
-    /// Upper bound of the bytes not yet taken. With base64 padding the number is smaller.
+    /// Upper limit of the number of bytes that take() can still return. Padding of base64 makes the number smaller.
     std::size_t most_left() const { return base64_ ? ready_.size() + from_.size() / 4 * 3 : from_.size(); }
 
     std::string take(std::size_t count) {
@@ -66,7 +66,7 @@ public:
         ready_.erase(0, count);
         return bytes;
     }
-    /// Throws SceneError that names `field` of the array.
+    /// Throws SceneError. Its message says by `field_` which numbers were to be read.
     [[noreturn]] void complain(const std::string& found, const std::string& expected) const {
         reader_.complain(field_, found, expected, damaged);
     }
@@ -125,10 +125,13 @@ std::uint64_t read_header(ByteSource& source, const VtkXmlForm& form) {
                             : number_from<std::uint32_t>(bytes.data(), form.foreign_bytes);
 }
 
-/// Reads and decompresses blocks. A header precedes them: number of blocks, size of a block, size of the last block (0
-/// if it is complete), and the compressed size of each block. `expected`: decompressed size in total [bytes].
+/// Reads and decompresses the blocks of an array. A header precedes them: number of blocks, decompressed size of a
+/// block, decompressed size of the last block (0: like the others), and compressed size of each block. `expected`:
+/// decompressed size of all blocks [bytes].
 std::string read_blocks(ByteSource& source, const VtkXmlForm& form, std::size_t expected) {
-    constexpr std::size_t best_ratio = 1032;  // largest compression ratio of zlib, to refuse damaged sizes
+    // Largest compression ratio of zlib. A block with a larger ratio is damaged, and is refused before memory is
+    // allocated.
+    constexpr std::size_t best_ratio = 1032;
     const std::uint64_t count = read_header(source, form), size = read_header(source, form),
                         last = read_header(source, form);
     const std::uint64_t whole = count - (last > 0 && count > 0 ? 1 : 0);

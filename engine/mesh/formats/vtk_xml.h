@@ -37,13 +37,13 @@ struct VtkXmlArray {
     std::string section;    // description of the array for error messages
 };
 
-/// Encoding that all arrays of a file share, from the attributes of <VTKFile> and <AppendedData>.
+/// Encoding of all arrays of a file. The attributes of <VTKFile> and <AppendedData> define it.
 struct VtkXmlForm {
     bool wide_header = false;    // headers (sizes before the data of an array) have 64 instead of 32 bits
     bool foreign_bytes = false;  // byte order of the file differs from the order of this machine
     bool compressed = false;
     bool has_appended = false, appended_base64 = false;
-    std::string_view appended;  // bytes after the "_" of <AppendedData>; raw: to the end of the file
+    std::string_view appended;  // bytes after the "_" of <AppendedData>; if they are raw: up to the end of the file
 };
 
 /// Reads the numbers of an array. Throws SceneError unless the array has exactly `count` numbers. `field` names the

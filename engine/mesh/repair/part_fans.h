@@ -15,9 +15,9 @@ struct PartedMesh {
 
 /// Splits nodes at which several fans meet. A fan is a set of tetrahedra at a node that are connected through faces
 /// with this node. If a node has several fans, each fan except the first gets a new node at the same position. The
-/// boundary then has one ring of triangles at each node and touches itself there. The shape of the tetrahedra is
-/// unchanged. Old nodes keep their indices, and new nodes are appended. An edge that only joins tetrahedra without a
-/// common face is not split if both of its end nodes have a single fan.
+/// boundary then has one ring of triangles at each of these nodes, and touches itself there. The shape of the
+/// tetrahedra is unchanged. Old nodes keep their indices, and new nodes are appended. Tetrahedra that share only an
+/// edge stay connected there if each end of the edge has a single fan.
 PartedMesh part_fans(const Mesh& mesh);
 
 }  // namespace skerry::mesh

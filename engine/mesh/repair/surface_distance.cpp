@@ -22,10 +22,10 @@ struct OneSidedDistance {
 
 OneSidedDistance distance_of(const SurfaceMesh& measured, const SurfaceMesh& target) {
     constexpr Real intervals_of_mean_edge = 8;
-    // largest number of intervals per edge; it gives at most 2,145 sample points per triangle
+    // upper limit of the number of intervals per edge; it gives at most 2,145 sample points per triangle
     constexpr int most_intervals = 64;
-    // Upper bound of the number of sample points of a surface, approximately. A surface with many triangles gets fewer
-    // points per triangle.
+    // Approximate upper limit of the number of sample points of a surface. A surface with very many triangles gets
+    // fewer points per triangle.
     constexpr Real most_points = 3e6;
     const TriangleTree tree(target);
     const Real mean = mean_edge(measured), area = area_of(measured);

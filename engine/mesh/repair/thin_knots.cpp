@@ -18,16 +18,16 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Corners = std::array<Vec3, 3>;
 
-// Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller increase does
+// Least factor by which a change must increase the smallest altitude of the changed triangles. A smaller increase does
 // not justify moving the surface.
 constexpr Real least_gain = 1.1;
-// Largest allowed distance of sample points of either surface (original or changed) from the other one, as a fraction
-// of the tolerance. The rest of the tolerance is a margin for the surface between the sample points.
+// Largest allowed distance of sample points of either surface (original or changed) from the other surface, as a
+// fraction of the tolerance. The rest of the tolerance is a margin for the points between the sample points.
 constexpr Real share_of_tolerance = 0.8;
-// Smallest cosine of the angle by which a change may rotate the normal of a triangle (60 degrees).
+// Lower limit of the cosine of the angle by which a change may rotate the normal of a triangle (60 degrees).
 constexpr Real least_turn = 0.5;
-// A flat triangle has no meaningful normal. The normal of a triangle that replaces it is therefore compared with the
-// mean normal of all removed triangles. This is the smallest allowed cosine between the two normals.
+// A flat triangle has no meaningful normal. The triangle that replaces it is therefore compared with the mean normal of
+// all removed triangles. This is the lower limit of the cosine of the angle between the two normals.
 constexpr Real least_turn_of_flat = 0.2;
 // Number of intervals per edge of a triangle. It gives 15 sample points per triangle, at which distances are measured.
 constexpr int intervals_per_edge = 4;
@@ -47,7 +47,7 @@ Real altitude_of(const Corners& x) {
 struct Change {
     std::vector<Index> removed;
     std::vector<Triangle> added;
-    // For each new triangle in `added`: the removed triangle of `removed` that the new triangle replaces.
+    // For each new triangle in `added`: the triangle in `removed` that it replaces.
     std::vector<Index> replaced;
     // For an edge collapse: the node that remains, and the node that is removed.
     Index kept = no_index, merged = no_index;
@@ -100,7 +100,7 @@ private:
         samples_.emplace_back();
     }
 
-    /// Adds a triangle to flat_ if it is not removed and its altitude is below settings_.altitude.
+    /// Puts a triangle into the queue flat_ if it still exists and its altitude is below settings_.altitude.
     void queue_if_flat(Index t) {
         const Real altitude = altitude_of(corners(triangle(t)));
         if (alive_[static_cast<std::size_t>(t)] && altitude < settings_.altitude) flat_.emplace(altitude, t);
@@ -142,8 +142,9 @@ private:
         const std::vector<Index> sides = triangles_with(a, b), near_a = neighbours(a), near_b = neighbours(b);
         std::vector<Index> common;
         std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
-        // Link condition: a and b must have exactly two common neighbours, else the collapse changes the topology. In
-        // the surface of a tetrahedron, the smallest closed surface, both have three neighbours; it is not collapsed.
+        // Link condition: a and b must have exactly two common neighbours, else the collapse changes the topology. The
+        // surface of a tetrahedron, on which a and b have three neighbours each, meets the condition but must not
+        // collapse.
         if (sides.size() != 2 || common.size() != 2 || near_a.size() + near_b.size() <= 6) return std::nullopt;
         Change change;
         change.position = (1 - fraction) * node(a) + fraction * node(b);
@@ -172,8 +173,8 @@ private:
             apex[s] = *std::find_if(triangle(sides[s]).begin(), triangle(sides[s]).end(),
                                     [&](Index n) { return n != a && n != b; });
         if (apex[0] == apex[1] || !triangles_with(apex[0], apex[1]).empty()) return std::nullopt;
-        // Each new triangle is an old one in which an end of the flipped edge is replaced by the apex of the other old
-        // triangle.
+        // Each new triangle is one of the two old ones, in which one end of the flipped edge is replaced by the apex of
+        // the other old triangle. The apex is the corner opposite to the flipped edge.
         for (std::size_t s = 0; s < 2; ++s) {
             Triangle added = triangle(sides[s]);
             std::replace(added.begin(), added.end(), next_after(added, apex[s]), apex[1 - s]);

@@ -8,7 +8,7 @@ namespace skerry::mesh {
 
 struct KnotSettings {
     Real tolerance = 0;  // largest distance that the surface may move, > 0 [m]
-    Real altitude = 0;   // triangles with a smaller altitude are repaired [m]
+    Real altitude = 0;   // triangles are repaired if their smallest altitude is less than this [m]
 };
 
 struct ThinnedSurface {
@@ -16,9 +16,9 @@ struct ThinnedSurface {
     std::size_t collapsed = 0, flipped = 0;  // number of collapsed edges, and number of flipped edges
 };
 
-/// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips one of its edges.
-/// The change that maximises the smallest altitude of the changed triangles is applied. Triangles that no change
-/// improves are left, and the surface is unchanged elsewhere. Every change preserves the topology (link condition: Dey,
+/// Repairs the triangles whose smallest altitude is below `altitude`, the flattest first, by collapsing or flipping one
+/// of their edges. Of the possible changes, it makes the one after which the smallest altitude of the changed triangles
+/// is largest. A triangle that no change improves is left. Every change preserves the topology (link condition: Dey,
 /// Edelsbrunner, Guha, Nekhayev, Topology preserving edge contraction, 1999) and the orientation of triangles. The old
 /// and the new surface stay within the tolerance of each other. The surface must be closed, with two triangles at every
 /// edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness of the body. The

@@ -21,21 +21,21 @@ public:
     /// The surface must have at least one triangle.
     explicit TriangleTree(SurfaceMesh surface);
 
-    /// Exact squared distance from the point to the nearest triangle [m^2]. Returns `limit`, also a squared distance,
-    /// if no triangle is nearer.
+    /// Exact squared distance from the point to the nearest triangle [m^2]. `limit`: upper limit of the squared
+    /// distance; it is returned if no triangle is nearer [m^2].
     Real distance_squared(const Vec3& point, Real limit = infinity) const {
         return nearest(point, limit).distance_squared;
     }
-    /// Nearest triangle. `limit`: squared distance up to which triangles are searched [m^2]. If no triangle is nearer,
+    /// Nearest triangle. `limit`: upper limit of the squared distance [m^2]. If no triangle is nearer than this limit,
     /// `triangle` is no_index and `distance_squared` is `limit`.
     NearestTriangle nearest(const Vec3& point, Real limit = infinity) const;
-    /// Nearest of the triangles that have the point in front of them and a normal within 90 degrees of `facing`.
-    /// `limit`: see nearest().
+    /// Nearest triangle among those whose normal is within 90 degrees of `facing` and points to the side on which the
+    /// point lies. `limit`: see nearest().
     NearestTriangle nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const;
 
 private:
-    /// Replaces `nearest` if a triangle in the subtree below row `row` of bvh_ is nearer. `facing`: see nearest_facing;
-    /// nullptr: all triangles.
+    /// Searches the subtree below node `row` of bvh_ for a triangle nearer than `nearest`, which it replaces. `facing`:
+    /// see nearest_facing; nullptr: all triangles are searched.
     void search(Index row, const Vec3& point, const Vec3* facing, NearestTriangle& nearest) const;
     bool faces(Index triangle, const Vec3& point, const Vec3& facing) const;
 

@@ -15,7 +15,7 @@ void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes);
 void require_size(const char* shape, const char* field, Real value);
 void require_count(const char* shape, const char* field, int value);
 
-/// Throws SceneError if four times the number of tetrahedra exceeds a 32-bit index (tables have an entry per corner).
+/// Throws SceneError if a mesh is too large for 32-bit indices: tables of corners have four entries per tetrahedron.
 void require_fits(const char* shape, const char* field, double tetrahedra);
 
 }  // namespace skerry::mesh

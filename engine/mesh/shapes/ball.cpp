@@ -41,11 +41,10 @@ public:
     }
 
 private:
-    // Barycentric coordinates of a node in its sector, times shells_: those of the three corners, then that of the
-    // centre.
+    // Barycentric coordinates of a node in its sector, times shells_: first for the three corners, then for the centre.
     using Steps = std::array<int, 4>;
-    // Identifies a node: sorted pairs (corner of the icosahedron, coordinate); corners with the coordinate 0 are (-1,
-    // 0). All sectors that share the node compute the same key.
+    // Identifies a node by sorted pairs (corner of the icosahedron, coordinate). A corner with the coordinate 0 is
+    // replaced by the pair (-1, 0). All sectors that share the node therefore compute the same key.
     using Key = std::array<std::pair<int, int>, 3>;
 
     Index node(const std::array<int, 3>& sector, const Steps& steps) {
@@ -56,8 +55,8 @@ private:
         std::sort(key.begin(), key.end());
         const auto [place, added] = row_.try_emplace(key, static_cast<Index>(mesh_.nodes.size()));
         if (added) {
-            // Spherical linear interpolation: the nodes on an edge of the sector divide its arc evenly. Inside the
-            // sector the spacing is nearly even.
+            // Spherical linear interpolation divides the arc of each edge of the sector evenly. Inside the sector the
+            // spacing of the nodes is nearly even.
             Vec3 direction = Vec3::Zero();
             for (const auto& [corner, count] : key)
                 if (count > 0)

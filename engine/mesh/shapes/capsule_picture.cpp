@@ -6,7 +6,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Number of nodes around the axis, and number of rings of nodes of each round end, the rim included but not the pole.
+// Number of nodes around the axis, and number of rings of nodes of each round end. The rim counts as a ring, the pole
+// does not.
 constexpr int around = 16, caps = 4;
 
 /// Builds a capsule from two round ends and a straight part. The tetrahedra of a round end meet at the centre of its
@@ -17,8 +18,8 @@ public:
 
     Mesh build() {
         for (const Real up : {-1.0, 1.0}) mesh_.nodes.emplace_back(0, 0, up * half_);
-        // After the two centres come the pole and four nodes of the rim of each end, so that a user finds nodes that
-        // show the rotation of the body.
+        // The first nodes are the two centres, then the pole and four nodes of the rim of each end. Users can pick
+        // nodes with these known numbers to show the rotation of the body.
         for (const int end : {0, 1}) {
             row_[end][caps][0] = add(end, caps, 0);
             for (int k = 0; k < around; k += around / 4) row_[end][0][k] = add(end, 0, k);

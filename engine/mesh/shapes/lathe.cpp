@@ -12,13 +12,13 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius and z [m]
 
-// height of a layer of prisms between two discs, divided by ring spacing; this ratio maximises the smallest altitude of
-// the tetrahedra
+// Height of a layer of prisms between two discs, divided by the spacing of the rings. This ratio maximises the smallest
+// altitude of the tetrahedra.
 constexpr Real layer_height = 1.0;
 // A kink of the outline becomes a layer boundary if the direction changes by more than this angle [rad].
 constexpr Real sharp_turn = 0.25;
-// Smallest distance between two layer boundaries, divided by ring spacing. A kink closer to a boundary does not become
-// one; the mesh then cuts it off.
+// Smallest distance between two layer boundaries, divided by the spacing of the rings. A kink that is closer to a layer
+// boundary does not become one itself, and the mesh cuts it off.
 constexpr Real least_layer = 0.6;
 constexpr Real point_radius = 0.3;  // an end narrower than this closes to a point (radius divided by ring spacing)
 
@@ -39,8 +39,8 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
     return (1 - t) * profile[i - 1][0] + t * profile[i][0];
 }
 
-/// Returns the z coordinates of the ends of the outline and of its sharp kinks, in ascending order. Of kinks closer
-/// together than least_layer * spacing only the sharpest is used.
+/// Returns the z coordinates of the ends of the outline and of its sharp kinks, in ascending order. If kinks are closer
+/// together than least_layer * spacing, only the sharpest is used. A kink as close as this to an end is not used.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;
@@ -83,8 +83,8 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
 std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing, int most_rings) {
     const Real narrow = point_radius * spacing;
     std::vector<Real> planes = find_planes(profile, spacing);
-    // A pointed end is a single point. If the outline is narrower than `narrow` also at the planes next to it, these
-    // planes would only produce tiny elements, so they are removed.
+    // A pointed end becomes a single point. If the outline is narrower than `narrow` also at the neighbouring plane,
+    // this plane would only produce tiny elements, so it is removed.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
     while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)
@@ -97,8 +97,8 @@ std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing
         discs.push_back(
             {planes[i], radius, std::clamp(static_cast<int>(std::lround(radius / spacing)), least, most_rings)});
     }
-    // Neighbouring discs may differ by at most one ring, as stack_discs requires. The number of rings of the wider disc
-    // is reduced, so that elements may become longer but not shorter.
+    // Neighbouring discs may differ by at most one ring, as stack_discs requires. Where they differ by more, the wider
+    // disc gets fewer rings. Elements may thus become longer, but not shorter.
     for (std::size_t i = 1; i < discs.size(); ++i) discs[i].rings = std::min(discs[i].rings, discs[i - 1].rings + 1);
     for (std::size_t i = discs.size() - 1; i-- > 0;) discs[i].rings = std::min(discs[i].rings, discs[i + 1].rings + 1);
     return discs;

@@ -8,7 +8,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Number of cells that divide `length` into parts of about `cell`, at least one. `cell`, `length` [m].
+/// Number of cells of about the size `cell` [m] into which `length` [m] is divided, at least one.
 int cells_in(Real length, Real cell) {
     const Real count = std::round(length / cell);
     require_fits("table", "cells", count);

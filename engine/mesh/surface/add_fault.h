@@ -5,8 +5,9 @@
 
 namespace skerry::mesh {
 
-/// Counts a fault of a kind, and returns the entry of the report for this kind. The first fault sets the place and the
-/// triangles of the entry. `triangle`, `other`: indices into report.cleaned.triangles.
+/// Adds 1 to the number of faults of a kind, and returns the entry of the report for this kind. Only the first fault of
+/// a kind sets the place and the triangles of the entry. `triangle`, `other`: faulty triangles, as indices into
+/// report.cleaned.triangles.
 SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index triangle, const Vec3& position,
                         Index other = no_index);
 /// Adds a fault whose place is the centre of the triangle.

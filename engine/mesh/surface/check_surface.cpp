@@ -57,8 +57,8 @@ void weld_into(SurfaceReport& report, const SurfaceMesh& surface) {
     report.number = std::move(number);
 }
 
-/// Reports the shells that occur twice: other triangles repeat each of their triangles. `repeated_by`: result of
-/// drop_duplicates.
+/// Reports each shell that occurs twice, which means that every triangle of the shell has a repetition. `repeated_by`:
+/// result of drop_duplicates().
 void report_repeated_shells(SurfaceReport& report, std::span<const Index> repeated_by) {
     std::vector<std::size_t> repeated(report.shells.size(), 0);
     for (std::size_t t = 0; t < repeated_by.size(); ++t)

@@ -14,8 +14,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Divides the given triangles into patches that are connected by edges. Returns true for the triangles of each patch
-/// with an edge at which an odd number of triangles of the surface meet, not counting `dropped` ones.
+/// Divides the given triangles into patches that are connected by edges. Returns true for all triangles of a patch if
+/// an odd number of triangles of the surface, not counting `dropped` ones, meet at an edge of the patch.
 std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
     UnionFind patches;
     patches.start(triangles.size());
@@ -39,12 +39,13 @@ std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& gi
     return marked;
 }
 
-/// Orients the triangles of each patch like most of them. A patch is connected by edges with two triangles. A one-sided
-/// patch (Moebius strip) is left as it is. Returns the first triangle of each one-sided patch.
+/// Orients the triangles of each patch like most of them. A patch consists of triangles that are connected by edges
+/// with exactly two triangles. A one-sided patch (Moebius strip) is left as it is. Returns the first triangle of each
+/// one-sided patch.
 std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     std::vector<std::array<Index, 3>>& triangles = report.cleaned.triangles;
-    // Two entries per triangle: its present and its opposite orientation. Orientations that neighbours can have
-    // together are joined, so a patch is one-sided if both entries of a triangle are joined.
+    // Each triangle has two entries: one for its present and one for its opposite orientation. Entries of neighbours
+    // whose orientations agree are joined. A patch is one-sided if both entries of a triangle become joined.
     UnionFind fitting;
     fitting.start(2 * triangles.size());
     for_each_edge(sides, [&](std::span<const Side> edge) {
@@ -84,9 +85,9 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     return one_sided;
 }
 
-/// Several solids touch at an edge with four or more triangles. Finds the two triangles that bound each solid there,
-/// and calls visit(a, b) with their sides. Half of the sides must lead in each direction. Returns true if solids
-/// overlap at the edge.
+/// Handles an edge with four or more triangles, at which several solids touch. Finds the two triangles that bound each
+/// solid there, and calls visit(a, b) with their sides. Half of the sides must lead in each direction. Returns true if
+/// solids overlap at the edge.
 bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto&& visit) {
     const auto at = [&](Index n) -> const Vec3& { return surface.nodes[static_cast<std::size_t>(n)]; };
     const Vec3 &low = at(edge[0].node[0]), along = (at(edge[0].node[1]) - low).normalized();
@@ -113,7 +114,7 @@ bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto
     std::vector<std::size_t> open;
     bool overlap = false;
     std::vector<bool> paired(edge.size(), false);
-    for (std::size_t i = 0; i < 2 * by_angle.size(); ++i) {  // two turns: a volume across angle 0 ends in the second
+    for (std::size_t i = 0; i < 2 * by_angle.size(); ++i) {  // two turns, as a volume across angle 0 ends in the second
         const SideAngle& here = by_angle[i % by_angle.size()];
         if (paired[here.side]) continue;
         if (here.opens && i < by_angle.size()) open.push_back(here.side);
@@ -216,7 +217,8 @@ void connect(SurfaceReport& report) {
         parts.join(a.triangle(), b.triangle());
         join_corners(fans, a, b);
     };
-    // sides at edges with one triangle; sides at edges with more triangles in one direction than in the other
+    // open: sides at edges with one triangle; unbalanced: sides at edges with more triangles in one direction than the
+    // other
     std::vector<Side> open, unbalanced;
     std::vector<bool> branches(surface.nodes.size(), false);
     Real edges = 0;

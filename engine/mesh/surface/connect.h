@@ -5,15 +5,15 @@
 
 namespace skerry::mesh {
 
-/// Drops triangles with the same nodes as an earlier triangle. A repeated triangle of opposite orientation is kept
-/// where two closed shells touch, which is the case if an even number of triangles meet at each edge of the touching
-/// patch. Returns for each remaining triangle the number (see SurfaceReport::number) of the first dropped triangle that
-/// repeated it, or no_index.
+/// Drops triangles with the same nodes as an earlier triangle. A repeated triangle of opposite orientation is kept if
+/// it belongs to a patch where two closed shells touch. In such a patch, an even number of triangles meet at each edge.
+/// Returns one entry for each remaining triangle: the number (see SurfaceReport::number) of the first dropped triangle
+/// that repeated it, or no_index.
 std::vector<Index> drop_duplicates(SurfaceReport& report);
 
-/// Turns triangles of `report.cleaned` so that all triangles connected by edges are oriented like most of them, and
-/// divides the triangles into shells. Reports holes, branching edges, pinched nodes, shells without an orientation, and
-/// edges at which shells overlap. First removes the faults that an earlier call reported.
+/// Turns triangles of `report.cleaned` so that triangles connected by edges have the orientation that most of them
+/// have, and divides the triangles into shells. Reports holes, branching edges, pinched nodes, shells without an
+/// orientation, and edges at which shells overlap. These faults replace those that an earlier call reported.
 void connect(SurfaceReport& report);
 
 /// Keeps the triangles of `report.cleaned` for which keeps(row) is true.

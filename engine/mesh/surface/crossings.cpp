@@ -39,7 +39,7 @@ Real longest_side(const Points& sides) {
     return std::sqrt(std::max({sides[0].squaredNorm(), sides[1].squaredNorm(), sides[2].squaredNorm()}));
 }
 
-/// Altitude perpendicular to the longest side, the smallest of the three [m].
+/// Smallest altitude of a triangle, which is perpendicular to its longest side [m].
 Real least_altitude(const Points& x) {
     const Points sides = sides_of(x);
     const Real length = longest_side(sides);
@@ -49,10 +49,10 @@ Real least_altitude(const Points& x) {
 enum class PairFault { none, crossing, overlap };
 
 /// Tests two triangles by separating axes (Gottschalk, Lin, Manocha 1996): convex shapes are apart if and only if their
-/// projections on one of the axes are. Triangles that share only a corner or an edge do not overlap, because their
-/// projections on some axis only touch. `tolerance`: overlap that counts as rounding error [m].
+/// projections on one of certain axes are. Triangles that share only a corner or an edge do not overlap, because on
+/// some axis their projections only touch. `tolerance`: largest overlap that counts as rounding error [m].
 PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
-    // Smallest |a x b| / (|a| |b|) of two sides for which the direction of a x b is reliable.
+    // Smallest sine of the angle between two sides, |a x b| / (|a| |b|), for which the direction of a x b is reliable.
     constexpr Real parallel = 1e-9;
     const Points u = sides_of(first), v = sides_of(second);
     const Vec3 normal = u[0].cross(u[1]).normalized(), other = v[0].cross(v[1]).normalized();
@@ -77,8 +77,8 @@ PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
     return PairFault::overlap;
 }
 
-/// Length of the ray from `origin`, a point of triangle `start_triangle`, to the first triangle that shares no node
-/// with `start_triangle`; at most `limit` [m].
+/// Length of a ray that starts at `origin`, a point of the triangle `start_triangle`, and ends at the first triangle
+/// that shares no node with `start_triangle`. Not more than `limit` [m].
 Real free_path(const SurfaceMesh& surface, const BoxTree& tree, Index start_triangle, const Vec3& origin,
                const Vec3& direction, Real limit) {
     Real nearest = limit;

@@ -64,12 +64,12 @@ SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
 
 /// Returns the largest distance of the nodes of the second shell from the first one, or nullopt if the second shell
 /// does not repeat the first one within `distance` [m]. Unless `keep_walls`, the limit for shells of the same
-/// orientation is larger (`close`).
+/// orientation is larger: see `close`.
 std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSize> sizes,
                             std::span<const std::vector<Index>> rows, std::size_t first, std::size_t second,
                             Real distance, bool keep_walls) {
-    // Distance divided by the diagonal of a shell up to which two shells of the same orientation count as one, because
-    // the space between them is hardly meant as a region.
+    // Upper limit of the distance between two shells of the same orientation, divided by their diagonal, at which they
+    // count as one. The narrow space between them is hardly meant as a region.
     constexpr Real close = 1e-3;
     const ShellSize &a = sizes[first], &b = sizes[second];
     const bool closed = report.shells[first].closed;
@@ -88,9 +88,9 @@ std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSi
     return std::sqrt(greatest);
 }
 
-/// Returns 1 or -1: the side of the line from `p` to `q` on which `x` lies in the projection along the x axis. For a
-/// point on the line the side does not depend on the triangle, so that exactly one of two triangles at an edge contains
-/// the point.
+/// Returns 1 or -1: the side of the line from `p` to `q` on which `x` lies, seen along the x axis. A point on the line
+/// counts as lying on one fixed side of it, whichever triangle the line belongs to. Thus exactly one of two triangles
+/// at an edge contains the point.
 int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
     const bool swapped = q.z() < p.z() || (q.z() == p.z() && q.y() < p.y());
     const Vec3 &a = swapped ? q : p, &b = swapped ? p : q;
@@ -98,7 +98,8 @@ int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
     return left == swapped ? -1 : 1;
 }
 
-/// Finds the shells that contain a point by the triangles that a ray along the x axis crosses.
+/// Finds the closed shells that contain a point. It counts the triangles that a ray from the point along the x axis
+/// crosses.
 class ContainingShells {
 public:
     explicit ContainingShells(const SurfaceReport& report, std::span<const ShellSize> sizes)
@@ -110,8 +111,8 @@ public:
         triangles_ = BoxTree(triangle_boxes(report.cleaned, 0));
     }
 
-    /// Returns the closed shells that wind around `x`, except shell `own`, in ascending order. Only triangles that the
-    /// ray from `x` towards larger x crosses are counted.
+    /// Returns the closed shells with a winding number other than 0 around the point `x`, except shell `own`, in
+    /// ascending order. Only triangles on the ray from the point in the direction +x are counted.
     std::vector<Index> around(const Vec3& x, Index own) {
         const auto on_ray = [&](const Aabb& box) {
             return box.lower.y() <= x.y() && x.y() <= box.upper.y() && box.lower.z() <= x.z() &&
@@ -147,8 +148,8 @@ private:
     std::vector<Index> passed_;  // shells whose triangles the ray of the present point crosses
 };
 
-/// Triangles of one shell for which the point just behind the triangle lies in the same other shells: their number, and
-/// the first of them. The key in SurroundedTriangles is the shell with the list of these other shells.
+/// A group of triangles of one shell, given by its size and its first triangle. The points just behind these triangles
+/// lie in the same other shells. The key of SurroundedTriangles is the shell and the list of these other shells.
 struct Surrounded {
     std::size_t count = 0;
     Index first = no_index;
@@ -251,7 +252,7 @@ void compare_shells(SurfaceReport& report) {
         SurfaceShell& shell = report.shells[own];
         if (seen[own] || !shell.closed) continue;
         seen[own] = true;
-        constexpr Real flat = 1e-12;  // a volume up to this times the cube of the size is a rounding error
+        constexpr Real flat = 1e-12;  // largest volume that is a rounding error, divided by size^3
         const Real size = (sizes[own].box.upper - sizes[own].box.lower).maxCoeff();
         shell.volume = sizes[own].volume;
         if (std::abs(shell.volume) <= flat * size * size * size)
@@ -266,7 +267,7 @@ void compare_shells(SurfaceReport& report) {
         return report.shells[static_cast<std::size_t>(shell)].volume > 0 ? 1 : -1;
     };
     for (const auto& [key, group] : surrounded) {
-        int volumes = sign_of(key.first);  // solids around the points behind the triangles; a void counts -1
+        int volumes = sign_of(key.first);  // solids that contain the points behind the triangles; a void: -1
         for (const Index other : key.second) volumes += sign_of(other);
         if (volumes > 1 || (volumes < 0 && !key.second.empty()))
             add_fault(report, SurfaceFaultKind::doubled_volumes, group.first).count += group.count - 1;

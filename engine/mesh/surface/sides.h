@@ -39,9 +39,9 @@ inline void join_corners(UnionFind& fans, const Side& a, const Side& b) {
     for (std::size_t end = 0; end < 2; ++end) fans.join(a.corner[end], b.corner[end]);
 }
 
-/// Finds nodes with several fans (triangles around a node that are connected by edges at the node). Returns one corner
-/// of each fan except the first fan of a node, in the order of the nodes. `fans`: result of join_corners for all common
-/// edges.
+/// Finds nodes with several fans. A fan is a set of triangles around a node that are connected by edges at this node.
+/// Returns one corner of each fan except the first fan of a node, in the order of the nodes. `fans`: result of
+/// join_corners() for all common edges.
 std::vector<Index> further_fans(Triangles triangles, UnionFind& fans);
 
 }  // namespace skerry::mesh

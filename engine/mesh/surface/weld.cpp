@@ -8,8 +8,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Joins nodes up to `distance` apart. The nodes are sorted along a direction that is normal to no plane of usual
-/// grids. Therefore few nodes lie in a slab of the thickness `distance` normal to it, and only those are compared.
+/// Joins nodes that are up to `distance` apart. The nodes are sorted along a direction that is not normal to the planes
+/// of usual grids. Only nodes within `distance` of each other in this direction are compared, and these are few.
 void join_close_nodes(std::span<const Vec3> nodes, Real distance, UnionFind& joined) {
     const Vec3 direction(0.41, 0.57, 0.71205);
     std::vector<std::pair<Real, Index>> along;

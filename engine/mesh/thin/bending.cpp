@@ -7,14 +7,13 @@ namespace skerry::mesh {
 
 namespace {
 
-// Ratio of true to computed excess, where excess is the bending energy of the elements minus the exact one. The
-// computed energy holds for nodes at the positions of exact bending; nodes that are free to move find a state of lower
-// energy. Strips of one or two layers of cells, solved statically, have ratios of 0.65 to 1; the smallest belongs to
-// strips that are two flat cells wide.
+// Ratio of the true to the computed excess of the bending energy. Excess: energy of the elements minus the exact
+// energy. The computed excess is too large, because it puts the nodes at the positions of exact bending, while free
+// nodes find a state of lower energy. In static solutions of strips of one or two layers of cells the ratio is 0.65 to
+// 1; it is smallest for strips that are two flat cells wide.
 constexpr Real remaining_excess = 0.8;
 
-/// Displacements of pure bending (Saint-Venant) with a curvature of 1 per metre. The neutral axis passes through a
-/// column.
+/// Displacements of pure bending (Saint-Venant) with a curvature of 1 per metre. The neutral axis crosses the column.
 struct Bending {
     std::size_t part, column;
     Vec3 middle;                   // point on the neutral axis [m]
@@ -39,7 +38,7 @@ Real energy_density(const Mat3& displacement_gradient, const Bending& bending, E
     return mu * strain.squaredNorm() + lambda / 2 * strain.trace() * strain.trace();
 }
 
-/// The tetrahedra that columns cross, and all others that share a node with them. The others are needed because
+/// The tetrahedra that columns cross, and the tetrahedra that share a node with them. The latter are needed because
 /// smoothed elements average the strain over the tetrahedra around an edge or a node.
 struct Surroundings {
     std::vector<std::array<Index, 4>> tetrahedra;
@@ -72,8 +71,8 @@ Surroundings surroundings_of(const Mesh& mesh, std::span<const BentColumn> colum
     return nearby;
 }
 
-/// Distance of the neutral axis from the start of a column: centroid of the column weighted by the modulus, int E z dz
-/// / int E dz [m].
+/// Distance of the neutral axis from the start of a column, int E z dz / int E dz [m]. E: Young's modulus along the
+/// column. z: distance from the start of the column.
 Real neutral_distance(const ThinColumn& column, const Surroundings& nearby,
                       std::span<const ElasticConstants> materials) {
     Real moment = 0, stiffness = 0;
@@ -86,8 +85,8 @@ Real neutral_distance(const ThinColumn& column, const Surroundings& nearby,
     return moment / stiffness;
 }
 
-/// Energy in a tetrahedron of exact bending with a curvature of 1 per metre: int E z^2 / 2 dV, with z measured from the
-/// neutral axis [J].
+/// Energy in a tetrahedron of exact bending with a curvature of 1 per metre: int E z^2 / 2 dV [J]. E: Young's modulus.
+/// z: distance from the neutral axis.
 Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> position, const Bending& bending) {
     Real sum = 0, squares = 0;
     for (const Index n : tetrahedron) {
@@ -107,7 +106,7 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
     // Several columns of a part may cross a tetrahedron. The first of these columns defines the neutral axis and the
     // directions of bending in the tetrahedron.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
-    // bending energy by column: exact one, and that of the elements [J]
+    // bending energy of each column: `exact` by the theory of beams, `found` with the elements [J]
     std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const BentColumn& bent = columns[c];
@@ -148,9 +147,9 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
         }
     });
 
-    // The bending moment is about the same in all columns, and each bends in proportion to its compliance exact /
-    // found. Therefore compliances are averaged, weighted by exact energy. A mean of stiffnesses would be dominated by
-    // a few slivers.
+    // The bending moment is about the same in all columns, so each column bends in proportion to its compliance
+    // (exact/found). Therefore the mean over a part is taken of the compliances, weighted by exact energy. A mean of
+    // the stiffnesses would be dominated by a few slivers.
     std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!(exact[c] > 0)) continue;

@@ -1,4 +1,4 @@
-// Bending stiffness of the elements of thin parts, as a multiple of the stiffness by the theory of beams.
+// Bending stiffness of the elements of thin parts, relative to the exact stiffness by the theory of beams.
 #pragma once
 
 #include <span>

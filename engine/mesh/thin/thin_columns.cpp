@@ -11,11 +11,12 @@ namespace skerry::mesh {
 
 namespace {
 
-// Greatest thickness of a thin column, as a multiple of the mean edge length of its tetrahedra. Of cubic cells with six
-// tetrahedra each, two layers have the ratio 1.6 and count as thin; three layers have 2.4 and do not.
+// Greatest thickness of a thin column, as a multiple of the mean edge length of its tetrahedra. If each cubic cell has
+// six tetrahedra, two layers of cells have the ratio 1.6 and count as thin; three layers have 2.4 and do not.
 constexpr Real thickest = 2;
-// Least cosine of the angle between the ray and the outer normal of the triangle through which the ray leaves (18
-// degrees). At a larger angle the two sides form a wedge, such as the rim of a fin, which is not treated as thin.
+// Lower limit of the cosine of the angle between the ray and the outer normal of the triangle through which the ray
+// leaves (18 degrees). At a larger angle the two sides form a wedge, such as the rim of a fin, which is not treated as
+// thin.
 constexpr Real opposite = 0.95;
 
 /// The face of a tetrahedron opposite to `corner` (0 to 3).
@@ -27,7 +28,7 @@ struct Face {
 /// Tetrahedra that a ray through a thin part can cross: those with a node on the boundary or one edge away from it.
 struct NearBoundary {
     std::vector<Index> number;  // numbers of the tetrahedra in the mesh
-    // beyond[t][k]: the face opposite to corner k of tetrahedron t, seen from the neighbour that shares it.
+    // beyond[t][k]: the face opposite to corner k of tetrahedron t, given as a face of the neighbour beyond it
     std::vector<std::array<Face, 4>> beyond;
     // on_boundary[t][k]: true if the face opposite to corner k of tetrahedron t is on the boundary
     std::vector<std::array<bool, 4>> on_boundary;
@@ -66,8 +67,8 @@ NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3
             near.beyond[static_cast<std::size_t>(faces[f].tetrahedron)][faces[f].corner] = face;
         } else if (std::ranges::all_of(faces[f].node,
                                        [&](Index n) { return level[static_cast<std::size_t>(n)] == outer; })) {
-            // A face that only one of these tetrahedra has is on the boundary if all of its nodes are boundary nodes.
-            // Otherwise its other tetrahedron is not near the boundary, and therefore not in the list.
+            // A face that belongs to only one of these tetrahedra is on the boundary if all of its nodes are boundary
+            // nodes. Otherwise the tetrahedron beyond the face is not near the boundary, and therefore not in the list.
             near.on_boundary[row][corner] = true;
             near.boundary.push_back(face);
         }
@@ -105,7 +106,8 @@ public:
             }
             face = beyond(exit->first);
             if (face.tetrahedron == no_index) return std::nullopt;
-            // Rounding errors can make a ray through a node or an edge enter the tetrahedra around it again and again.
+            // Because of rounding errors, a ray through a node or an edge may circle in the tetrahedra around it
+            // without end.
             const bool again =
                 std::ranges::find(column.crossings, number(face), &Crossing::tetrahedron) != column.crossings.end();
             if (again) return std::nullopt;
@@ -158,8 +160,9 @@ private:
         return normal.dot(inner - at(nodes[0])) > 0 ? Vec3(-normal) : normal;
     }
 
-    /// Returns the face through which the ray leaves the tetrahedron that it entered through `entered`, and the
-    /// distance of this point from the start of the ray [m]. Returns nullopt if rounding errors leave no such face.
+    /// Returns the face through which the ray leaves a tetrahedron, and the distance of the point of exit from the
+    /// start of the ray [m]. `entered`: face through which the ray enters. Returns nullopt if rounding errors leave no
+    /// such face.
     std::optional<std::pair<Face, Real>> exit_of(const ThinColumn& ray, Face entered) const {
         std::optional<std::pair<Face, Real>> exit;
         for (Index corner = 0; corner < 4; ++corner) {

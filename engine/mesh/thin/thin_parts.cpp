@@ -14,16 +14,16 @@ namespace skerry::mesh {
 
 namespace {
 
-// Least ratio of length to thickness of a part. Shorter parts carry loads by shear and compression more than by
-// bending.
+// Lower limit of the ratio of length to thickness of a part. Shorter parts carry loads by shear and compression more
+// than by bending.
 constexpr Real slender = 4;
-// Least volume of a part, as a fraction of the volume of the mesh. The value excludes fins and tails of animals (up to
-// 2 %) and includes the leg of a table (5 %).
+// Lower limit of the volume of a part, as a fraction of the volume of the mesh. It excludes fins and tails of animals
+// (up to 2 %) and includes the leg of a table (5 %).
 constexpr Real noticeable_volume = 0.03;
-// Least cosine of the angle between neighbouring triangles of a part. At a sharper edge another side of the body
-// begins, which is a part of its own.
+// Lower limit of the cosine of the angle between the normals of neighbouring triangles of a part. At a sharper edge
+// another side of the body begins, which is a part of its own.
 constexpr Real smooth_edge = 0.7;
-// Largest number of columns of a part whose energy is computed. They are spread evenly over the part.
+// Upper limit of the number of columns of a part for which the energy is computed. These columns are spread evenly.
 constexpr std::size_t most_columns = 500;
 
 /// Groups columns by part. Two columns belong to the same part if their first triangles share a smooth edge, or if one
@@ -72,8 +72,8 @@ ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, V
         part.layers += column->area * column->layers;
     }
     part.place /= area;
-    // `thickness` is still the sum of area times thickness; half of it, because columns from opposite triangles fill
-    // the same space
+    // Here `thickness` is still the sum of area times thickness. The volume is half of this sum, because columns from
+    // opposite triangles fill the same space.
     part.volume = part.thickness / 2;
     part.thickness /= area;
     part.layers /= area;
@@ -94,8 +94,8 @@ ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, V
     return part;
 }
 
-/// Direction in which the part extends at a column: the axis of the part, made perpendicular to the column. Any
-/// perpendicular direction is used if the column is nearly parallel to the axis.
+/// Direction in which the part extends at a column: the component of `axis` perpendicular to the column. If the column
+/// is nearly parallel to `axis`, any perpendicular direction is used.
 Vec3 tangent_of(const ThinColumn& column, const Vec3& axis) {
     constexpr Real too_steep = 0.1;  // smallest usable sine of the angle between the column and the axis
     const Vec3 along = axis - axis.dot(column.direction) * column.direction;

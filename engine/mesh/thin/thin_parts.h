@@ -16,20 +16,20 @@ struct ElasticConstants {
     Real poisson_ratio;  // Poisson's ratio
 };
 
-/// A part of a mesh that is a few cells thick and several times longer than it is thick. Parts with a very small
-/// fraction of the volume are left out.
+/// A part of a mesh that is a few cells thick and several times as long as it is thick. Parts with a very small
+/// fraction of the volume of the mesh are not listed.
 struct ThinPart {
     Vec3 place = Vec3::Zero();  // mean of the centroids of the boundary triangles of the part [m]
     Real thickness = 0;         // mean thickness [m]
     Real length = 0;            // longest extent [m]
     Real layers = 0;            // mean number of layers of cells through the thickness
     Real volume = 0;            // estimate of its volume [m^3]
-    // Estimate of the bending stiffness of the elements, as a multiple of the bending stiffness of the material.
+    // Estimated bending stiffness of the elements, divided by the exact bending stiffness of a part of this material.
     Real stiffness = 1;
 };
 
-/// Returns the thin parts of a mesh of positive tetrahedra. `boundary` lists its boundary triangles. `zones` lists the
-/// elements of the body; MaterialZone::material is an index of `materials`.
+/// Returns the thin parts of a mesh, whose tetrahedra must have positive volumes. `boundary`: boundary triangles of the
+/// mesh. `zones`: elements of the body; MaterialZone::material is an index into `materials`.
 ///
 /// A ray is followed from each boundary triangle along its inner normal. The mesh is thin there if the ray leaves it
 /// within two mean edge lengths, through a triangle nearly perpendicular to the ray. Neighbouring triangles of this

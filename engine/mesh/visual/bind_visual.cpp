@@ -15,8 +15,8 @@ namespace skerry {
 
 namespace {
 
-// Largest usual distance of a visual surface outside of a body, divided by the mean edge length of the boundary of the
-// body. A coarse mesh follows the visual surface only roughly.
+// Usual upper limit of the distance of a visual surface from its body, divided by the mean edge length of the boundary
+// of the body. The surface may lie outside of the body, because a coarse mesh follows it only roughly.
 constexpr Real most_edges_outside = 3;
 
 /// A body at rest, to find the tetrahedron around a point or the point of the boundary nearest to it.
@@ -74,8 +74,8 @@ private:
     BoxTree boxes_;
 };
 
-/// Normals of the nodes of a surface, not normalised: sum of the unit normals of the triangles at the node, times twice
-/// their area [m^2].
+/// Normals of the nodes of a surface, not normalised: sum of the normals of the triangles at the node. The normal of a
+/// triangle has the length of twice its area [m^2].
 std::vector<Vec3> normals_of_nodes(const VisualSurface& surface) {
     std::vector<Vec3> normals(surface.nodes.size(), Vec3::Zero());
     for (const std::array<Index, 3>& corners : surface.triangles) {
@@ -100,9 +100,9 @@ Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
     return place;
 }
 
-/// Terms of the deformation gradients of the nodes for which `is_needed` is true. Volume times gradient of a
-/// tetrahedron is the sum of x a^T / 3 over its corners, where x is the position of the corner and a the inward area
-/// vector of the opposite face at rest.
+/// Terms of the deformation gradients at those nodes for which `is_needed` is true. In a tetrahedron, volume times
+/// deformation gradient is the sum of x a^T / 3 over its corners. x: position of the corner. a: inward area vector of
+/// the opposite face at rest.
 Ragged<GradientTerm> gradients_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                   const std::vector<bool>& is_needed) {
     std::vector<std::vector<GradientTerm>> terms(nodes.size());
@@ -211,8 +211,8 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Vec3& node = visual.surface.nodes[i];
         const MaterialPoint& point = visual.point.emplace_back(shape.nearest(node, normals[i]));
-        // RestShape::nearest repeats the first node only for points on the boundary. A node inside the body gets the
-        // offset zero, not a rounding error.
+        // Only for a point on the boundary does RestShape::nearest return the first node twice. A node inside the body
+        // gets the offset zero, not a rounding error.
         const bool is_inside = point.node[3] != point.node[0];
         visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(node - position_of(point, nodes)));
         const Real distance = visual.offset.back().norm();

@@ -11,18 +11,19 @@
 
 namespace skerry {
 
-/// One node's term of a deformation gradient F: F is the sum of x gradient^T over the terms, where x is the position of
+/// Term of one node in a deformation gradient F, which is the sum of x gradient^T over all terms. x: position of
 /// `node`.
 struct GradientTerm {
     Index node;
     Vec3 gradient;  // [1/m]
 };
 
-/// A node of the surface has the position p + F d: p is the material point of the body that was nearest at rest, d the
-/// offset of the node from p at rest, and F the deformation gradient at p. If the node is outside of a deformable body,
-/// p is on a boundary triangle that faces the same way as the surface, if one is near. F is interpolated between nodes
-/// of the body. At a node it is the mean over the adjacent tetrahedra, weighted by volume. For a rigid body F comes
-/// from one tetrahedron of nodes that are far apart. All node numbers are local to the body.
+/// A visual surface, each node of which follows a material point p of the body. The position of the node is p + F d. F:
+/// deformation gradient at p. d: offset of the node from p at rest. At rest, p is the point of the body nearest to the
+/// node. For a node outside of a deformable body, boundary triangles that face the same way as the surface are
+/// preferred if one is near. F is interpolated between nodes of the body. At a node it is the mean over the adjacent
+/// tetrahedra, weighted by volume. For a rigid body F comes from one tetrahedron of nodes that are far apart. All node
+/// numbers are local to the body.
 struct BoundVisual {
     VisualSurface surface;
     VisualFit fit;
@@ -32,8 +33,8 @@ struct BoundVisual {
     Ragged<GradientTerm> gradient;
 };
 
-/// Points of a surface, each with one node and at most one texture point. A node at which texture coordinates jump has
-/// several points.
+/// Points of a surface. Each point has one node and at most one texture point. A node at which texture coordinates jump
+/// has several points.
 struct VisualPoints {
     std::vector<Index> node, texture_point;  // for each point: index of its node, and of its texture point or no_index
     std::vector<std::array<Index, 3>> triangles{};  // indices of points

@@ -12,8 +12,8 @@ static_assert(std::endian::native == std::endian::little, "crate files store lit
 
 namespace {
 
-// Bit fields of a CrateValue: flag "array", flag "inlined" (the payload is the value, else a position in the file),
-// type, payload.
+// Bit fields of a CrateValue, from the highest bit: flag "array"; flag "inlined"; type; payload. The payload is the
+// value itself if it is inlined, else the position of the value in the file.
 constexpr std::uint64_t array_bit = 1ull << 63, inlined_bit = 1ull << 62;
 constexpr int type_shift = 48;
 constexpr std::uint64_t payload_mask = (1ull << type_shift) - 1;
@@ -22,8 +22,8 @@ constexpr std::string_view header("PXR-USDC\0\x08\0\0\0\0\0\0", 16);  // identif
 constexpr std::size_t header_reserved = 64;   // reserved zero bytes after the position of the table of contents
 constexpr std::uint32_t end_of_fields = ~0u;  // ends each list of field indices in the table of field sets
 
-/// Encodes bytes as an LZ4 block of literals, that is, without compression. A zero byte comes first: the format stores
-/// there the number of blocks after the first.
+/// Encodes bytes as an LZ4 block that consists only of literals, which means without compression. The zero byte at the
+/// start is the number of further blocks, which the format expects there.
 std::string literal_block(std::string_view bytes) {
     std::string out(1, '\0');
     constexpr std::size_t short_length = 15, long_step = 255;
@@ -49,13 +49,14 @@ struct CrateFile::Tables {
     std::vector<CrateValue> field_value;
     std::vector<std::int32_t> spec_path, spec_fields, spec_kind;
     // Paths in depth-first order: index of the path, token of its last element (negative for a property), and distance
-    // in this table to the next sibling. Three distances are codes: -2 without child and next sibling, -1 with a child
-    // only, 0 with a next sibling only.
+    // in this table to the next sibling. Three values of the distance have a special meaning. -2: no child and no next
+    // sibling. -1: a child, but no next sibling. 0: a next sibling, but no child.
     std::vector<std::int32_t> path_number, path_token, path_jump;
 };
 
 CrateFile::CrateFile(std::iostream& file) : file_(file) {
-    // The path table negates the token index of a property, so index 0 goes to the empty token, which no property has.
+    // The path table negates the token index of a property. Zero has no negative, so index 0 goes to the empty token,
+    // which is the name of no property.
     token_index("");
     write(std::as_bytes(std::span(header)));
     write(std::vector<std::byte>(sizeof(std::int64_t) + header_reserved));
@@ -168,8 +169,8 @@ CrateValue CrateFile::times(std::span<const double> times) {
 CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue> values) {
     align();
     const CrateValue value = stored(CrateType::time_samples, size_);
-    // The format has a relative offset before the times and before the values, so that their data can come first. Here
-    // the data are stored elsewhere, and each offset only skips its own 8 bytes.
+    // The format has an offset before the times and one before the values, so that the data can stand between offset
+    // and value. Here the data are stored elsewhere, and each offset only skips its own 8 bytes.
     constexpr auto next = static_cast<std::int64_t>(sizeof(std::int64_t));
     put(next);
     put(times);

@@ -50,9 +50,9 @@ struct CrateSpec {
     std::vector<CrateSpec> children{};
 };
 
-/// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Each value is written when it is
-/// made, so that memory holds only its CrateValue (8 bytes). For its tables the format requires LZ4. They are written
-/// as LZ4 blocks without compression, because they are short compared with the values.
+/// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Each value is written to the file
+/// at once, so that memory holds only its CrateValue (8 bytes). The format requires that its tables are LZ4 blocks.
+/// They are written without compression, because they are short compared with the values.
 class CrateFile {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.
@@ -80,9 +80,10 @@ public:
     }
     CrateValue token_array(std::span<const std::string> texts);
     CrateValue token_vector(std::span<const std::string> texts);
-    /// Returns a USD list edit with one token, which goes before the list of weaker layers (files with lower priority).
+    /// Returns an edit of a list in USD: it puts one token before the list of weaker layers (files with lower
+    /// priority).
     CrateValue prepended_token(std::string_view text);
-    /// Returns a list edit with the path that a relationship or a connection points to.
+    /// Returns an edit of a list in USD that sets the path to which a relationship or a connection points.
     CrateValue target(std::string_view path);
     CrateValue times(std::span<const double> times);
     /// Returns the time samples of an attribute. `times`: result of times() with as many times as `values` has entries.
@@ -96,7 +97,7 @@ public:
         return values;
     }
     /// Completes the file. `root`: the whole scene, of kind SpecKind::root. close() adds the fields "properties" and
-    /// "primChildren", which list the children of a spec; the caller must not.
+    /// "primChildren", which list the children of a spec, so the caller must not add them.
     void close(CrateSpec root);
 
 private:

@@ -60,9 +60,9 @@ std::size_t nearest_drawn(const BodyFrame& body, std::span<const Real> area, con
     return node;
 }
 
-/// Contact pressure by body and node: sum of the normal forces of the contacts at the node over the area of the surface
-/// that belongs to it [Pa]. Some bodies have contacts at nodes inside the drawn surface (core nodes of round bodies).
-/// Such a force is added at the drawn node nearest to the contact point.
+/// Contact pressure by body and node: sum of the normal forces of the contacts at the node, divided by the surface area
+/// that belongs to the node [Pa]. Some bodies have contacts at nodes inside the drawn surface (core nodes of round
+/// bodies). Such a force is added at the drawn node nearest to the contact point.
 std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
     std::vector<std::vector<Real>> pressure, area;
     std::map<BodyHandle, std::size_t> number;

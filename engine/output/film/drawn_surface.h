@@ -53,7 +53,7 @@ Quantity quantity_of(FilmColor color);
 /// Values of the quantity that `color` shows, for each body of the frame and each of its nodes. `color` must not be
 /// FilmColor::none.
 std::vector<std::vector<Real>> quantity_of_nodes(const Frame& frame, FilmColor color);
-/// Default of the value at the upper end of the colours: 99 % of the values above zero are below it.
+/// Default of the value at the upper end of the colours: 99 % of the positive values are below it.
 inline Real usual_top(const Quantile& values) {
     return values.at(0.99);
 }

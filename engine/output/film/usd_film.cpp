@@ -58,8 +58,8 @@ void UsdFilm::put_triangles(Object& object, std::span<const std::array<Index, 3>
     object.mesh.push_back(attribute("faceVertexIndices", "int[]", integers(corners)));
 }
 
-/// Appends a value to a track; a value equal to the previous one is not written again. `content`: the elements if
-/// `is_array`, else one element.
+/// Appends a value to a track. A value equal to the previous one is not written again. `content`: elements of the value
+/// if it is an array (`is_array`), else the value as the only element.
 template <class T>
 void UsdFilm::put(Track& track, std::span<const T> content, CrateType type, bool is_array) {
     const std::span<const std::byte> bytes = std::as_bytes(content);
@@ -90,8 +90,8 @@ void UsdFilm::put_points(Object& object, std::span<const Vec3f> points) {
     put(object.extent, std::span<const Vec3f>(extent), CrateType::vec3_float, true);
 }
 
-/// Writes the vertices of a rigid body in body coordinates. They are replaced in later frames of the film only if one
-/// has moved in body coordinates by more than rounding errors, that is, if the shape has changed.
+/// Writes the vertices of a rigid body in body coordinates. A later frame of the film replaces them only if the shape
+/// has changed: a vertex has moved in body coordinates by more than rounding errors.
 void UsdFilm::put_rigid_body(Object& object, const MotionKey& pose, std::span<const Vec3> points) {
     // largest difference that counts as rounding error of a float, as a fraction of the radius of the body
     constexpr Real tolerance = 1e-7;
@@ -136,7 +136,8 @@ void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
         object.rigid_points.clear();
         put_pose(object, origin, Mat3::Identity());
         put_points(object, relative_to(origin, points));
-        // The transform of the prim already moves with the mean velocity, so only the rest is written.
+        // The transform of the prim already moves with the mean velocity, so only differences from this mean are
+        // written.
         const std::vector<Vec3f> relative = relative_to(mean_of(velocities), velocities);
         put(object.velocities, std::span<const Vec3f>(relative), CrateType::vec3_float, true);
     }
@@ -167,8 +168,8 @@ void UsdFilm::put_collider(const ColliderFrame& collider) {
 }
 
 void UsdFilm::add(const Frame& frame) {
-    // Frame times are multiples of frame_step except for rounding, which is removed here, and except for the last frame
-    // of a stopped run.
+    // Frame times are multiples of frame_step, apart from rounding errors, which are removed here. Only the last frame
+    // of a stopped run may have another time.
     constexpr Real slack = 1e-6;
     const Real steps = frame.time / settings_.frame_step, nearest = std::round(steps);
     const Real time = std::abs(steps - nearest) < slack ? nearest : steps;
@@ -268,9 +269,9 @@ void UsdFilm::put_materials(Object& object, const VisualSurface& surface) {
 }
 
 /// Hides an object in the frames before it was added and after it was removed. Blender ignores animated visibility, so
-/// the object also gets the size zero.
+/// the object is also scaled to the size zero in these frames.
 void UsdFilm::put_presence(const Object& object, CrateSpec& mesh) {
-    constexpr double before = 1e-3;  // USD interpolates sizes: the change takes this long [frame steps]
+    constexpr double before = 1e-3;  // duration of a change of size, because USD interpolates sizes [frame steps]
     std::vector<double> times;
     std::vector<bool> present;
     const auto switch_at = [&](double time, bool shown_before, bool shown_after) {

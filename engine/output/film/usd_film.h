@@ -20,8 +20,8 @@ namespace skerry {
 
 /// Writes one prim of type Mesh for each body and each collider. Vertices are relative to the transform of the prim, so
 /// that the rounding errors of floats do not grow with the distance from the origin of the world. The transform of a
-/// rigid body moves with the body, so its vertices are written again only if its shape changes. A value equal to the
-/// value in the previous frame takes only 8 bytes.
+/// rigid body moves with the body, so its vertices are written again only if its shape changes. A value that has not
+/// changed since the previous frame takes only 8 bytes.
 class UsdFilm {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.
@@ -90,7 +90,8 @@ private:
     std::optional<PlanePatch> patch_;  // part of infinite planes to display, in world coordinates
     Quantile quantity_;
     Real top_ = 0;
-    // Lists of times that the file already has, by first frame and number of frames, so that objects share them.
+    // Lists of times already written to the file, by first frame and number of frames. Objects with equal lists share
+    // one.
     std::map<std::pair<std::size_t, std::size_t>, CrateValue> written_times_;
 };
 

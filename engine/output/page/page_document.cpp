@@ -54,8 +54,8 @@ std::string image_uri(const std::filesystem::path& file) {
     return std::string("data:image/") + (is_png ? "png" : "jpeg") + ";base64," + base64(bytes);
 }
 
-/// Materials of each visual surface. The page does not contain textures that image_uri() cannot encode. Their file
-/// names are given as "left_out".
+/// Materials of each visual surface. A texture that image_uri() cannot encode is missing on the page, and "left_out"
+/// gives the name of its file.
 Json json_of_visuals(std::span<const std::vector<VisualMaterial>> visuals) {
     Json list = Json::array();
     for (const std::vector<VisualMaterial>& materials : visuals) {

@@ -25,15 +25,15 @@ void require_page_library(const std::filesystem::path& file);
 /// SceneError if this build has no three.js.
 std::string live_page();
 
-/// Numbers of objects in a stream, or in the part of a stream that a page already has.
+/// Numbers of bodies and other objects in a stream, or in the part of a stream that a page already has.
 struct PageCounts {
     std::size_t bodies = 0, visuals = 0, colliders = 0, lines = 0;
 
     bool operator==(const PageCounts&) const = default;
 };
 PageCounts counts_of(const PageStream& stream);
-/// Returns the JSON members that describe the objects of a stream. Omits the objects that `first` counts, because the
-/// page already has them.
+/// Returns the JSON members that describe the objects of a stream. `first`: number of objects of each kind that are
+/// left out, because the page already has them.
 Json json_of_objects(const PageStream& stream, const PageCounts& first);
 /// Returns the values of a frame for the plots, by name.
 Json json_of_row(const PageRow& row);

@@ -15,8 +15,8 @@
 
 namespace skerry {
 
-/// A collider with the shape that it had in its first frame. The picture of a plane is empty, because the page draws
-/// planes itself.
+/// A collider with the shape that it had in its first frame. `picture`: triangle mesh for display; empty for a plane,
+/// because the page draws planes itself.
 struct PageCollider {
     std::string name;
     std::string kind;  // kind of shape: plane, sphere, box, capsule, cylinder, bucket or mesh
@@ -58,7 +58,8 @@ public:
     std::span<const PageCollider> colliders() const { return colliders_; }
     std::span<const PageLine> lines() const { return lines_.lines(); }
 
-    /// Values of one body in the last frame, by field and vertex. values() has the order of the bodies in the frame.
+    /// Values of one body in the last frame, by field and vertex. The list that values() returns has the order of the
+    /// bodies in the frame.
     struct BodyValues {
         Index number = 0;     // number of the body in the stream
         bool is_new = false;  // true in the first frame of the body

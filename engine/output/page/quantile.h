@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Histogram of positive values with bins that are 2 % wide. From it a legend gets an upper end that includes nearly
-/// all values, so that a single extreme value does not stretch the legend.
+/// Histogram of positive values with bins that are 2 % wide. The upper end of a legend is a quantile, which includes
+/// nearly all values, so that a single extreme value does not stretch the legend.
 class Quantile {
 public:
     void add(Real value) {

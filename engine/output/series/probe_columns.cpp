@@ -119,7 +119,7 @@ void require_weights(const PointProbe& point) {
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
-    // The mean force is known only if some call of advance since the last row was long enough to measure it.
+    // The mean force is known only if at least one call of advance since the last row was long enough to measure it.
     const bool is_measured = force.seconds > 0 && force.measured;
     const Real none = std::numeric_limits<Real>::quiet_NaN();
     const Real per = is_measured ? 1 / force.seconds : none;

@@ -14,7 +14,7 @@ struct ForceSum {
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();
     // Sum of the magnitudes of the normal impulses [N s], largest force [N], and duration of the sums [s].
     Real pressing = 0, largest = 0, seconds = 0;
-    bool measured = false;  // true if at least one call of advance in this time was long enough to measure the force
+    bool measured = false;  // true if at least one of the summed calls of advance was long enough to measure the force
     Index contacts = 0;
 
     void add(const ForceReport& report);
@@ -27,11 +27,11 @@ struct TrackedProbe {
     ForceSum force{};
 };
 
-// check_probes(), add_forces() and put_row() throw a SceneError that names the probe if the world lacks an object or a
-// node of the probe.
+// If the world lacks an object or a node of a probe, check_probes(), add_forces() and put_row() throw a SceneError that
+// names the probe.
 
-/// Checks that the names of the probes are valid and distinct, and that the world has the objects and nodes that the
-/// probes refer to.
+/// Throws SceneError unless the names of the probes are valid and distinct, and the world has the objects and nodes of
+/// the probes.
 void check_probes(const World& world, std::span<const RecordedProbe> probes);
 /// Starts probes that check_probes() has accepted: sets their origins, and makes the world measure forces if one of the
 /// probes needs them.

@@ -36,7 +36,8 @@ std::string csv_head(const std::vector<SeriesColumn>& columns) {
     return line + "\n";
 }
 
-/// The first value is the time. Its last digits are rounding errors of the sum of all steps and are left out.
+/// Returns a row as a line of CSV. The first value is the time, whose last digits are rounding errors of a sum over all
+/// steps. They are left out.
 std::string csv_row(std::span<const Real> values) {
     char time[32];
     std::snprintf(time, sizeof time, "%.14g", values.front());
@@ -45,8 +46,8 @@ std::string csv_row(std::span<const Real> values) {
     return line + "\n";
 }
 
-/// Reads an existing CSV file, which must have the headings `head`. Returns its complete rows with times up to `until`
-/// [s]; nothing if the file cannot be read or is empty.
+/// Returns the rows of an existing CSV file that are complete and have times up to `until` [s]. The file must have the
+/// headings `head`. Returns nothing if the file cannot be read or is empty.
 std::string rows_to_keep(const std::filesystem::path& file, const std::string& head, Real until) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return {};
@@ -137,7 +138,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    // Without a step since the last call of sample(), there are no forces to add and no new row.
+    // If no step was made since the last call of sample(), there are no forces to add and no new row.
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) add_forces(world, probe);

@@ -35,8 +35,8 @@ inline void vectors(VtkFile& file, std::string_view name, auto&& rows, auto&& va
     });
 }
 
-/// Adds the array "offsets" for `count` cells with `nodes` nodes each. The value of a cell is the end of its nodes in
-/// the array "connectivity": the index after the last one.
+/// Adds the array "offsets" for `count` cells with `nodes` nodes each. The offset of a cell is the index after its last
+/// node in the array "connectivity".
 inline void offsets(VtkFile& file, std::size_t count, Index nodes) {
     file.array<std::int32_t>("offsets", 1, count, [&](auto put) {
         for (std::size_t cell = 1; cell <= count; ++cell) put(static_cast<Index>(cell) * nodes);

@@ -58,8 +58,8 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
             is_series_file(entry.path().filename().string(), name_))
             earlier_.push_back(entry.path());
     for (const std::filesystem::path& file : earlier_) require_replaceable(file);
-    // The index file is removed first. If the removal of another file then fails, no index is left that names missing
-    // files.
+    // The index file is removed first. Otherwise, if the removal of another file failed, an index that lists missing
+    // files would be left.
     std::stable_partition(earlier_.begin(), earlier_.end(),
                           [](const auto& file) { return file.extension() == ".pvd"; });
 }
@@ -143,7 +143,8 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         list(3, frame_file("lines", ".vtp"));
         list(4, frame_file("visual", ".vtp"));
     }
-    // Stores the present poses, so that later frames refer to the last file of colliders until a collider moves.
+    // Stores the present poses of the colliders. Later frames then refer to the last file of colliders until a collider
+    // moves.
     if (!colliders_file_.empty()) colliders_changed(now);
 }
 
@@ -216,8 +217,8 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
     VtkFile file("UnstructuredGrid", frame.time);  // no VtkTexts, because meshio cannot read them
     file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
     // Positions are doubles, because users compute small differences of them (gaps, displacements, strains), for which
-    // floats have too few digits. All other real numbers are floats, whose rounding errors are below the errors of the
-    // simulation.
+    // floats have too few digits. All other real numbers are floats; their rounding errors are smaller than the errors
+    // of the simulation.
     file.open("Points");
     file.array<double>("Points", 3, points,
                        of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.position[n]); }));

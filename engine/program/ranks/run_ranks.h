@@ -32,19 +32,19 @@ struct RanksReport {
     std::vector<double> peak_memory;  // greatest resident memory of each rank so far [bytes]
     // means per step; messages and bytes are sums over all ranks, reductions are those of one rank
     double messages = 0, bytes = 0, reductions = 0;
-    double waiting = 0;  // wall time in MPI calls, divided by that of the steps; mean over the ranks
+    double waiting = 0;  // share of the wall time of the steps spent in MPI calls; mean of all ranks
     // longest computing time of a rank, divided by the mean of all ranks
     double imbalance = 1;
     RankWork work{};  // empty if there is one rank
 
-    /// Replaces the work in `world`, the report of rank 0, which counts only the work of this rank, by the work of all
-    /// ranks. Does nothing if there is one rank.
+    /// Completes `world`, the report of rank 0, which counts only the work of rank 0: replaces its values by those of
+    /// `work`, the sums over all ranks. Does nothing if there is one rank.
     void complete(WorldReport& world) const;
 };
 
 /// The ranks (MPI processes) that share the simulation of one run. Rank 0 builds the world, which is then divided among
-/// them. Rank 0 alone reports and writes files, for which it gathers the whole world. In a run of one process no
-/// function communicates.
+/// them. Rank 0 alone reports and writes files, for which it gathers the whole world. All ranks must call the functions
+/// that are marked as collective. In a run of one process no function communicates.
 class RunRanks {
 public:
     /// Joins the other processes that mpirun or srun has started with this process, if there are any. Throws SceneError
@@ -60,21 +60,21 @@ public:
     /// and read the same files. `scene`: scene file. `assignments`: changes of the scene by --set.
     void compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments);
     /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if one of them has failed
-    /// before, or has received a signal, because a signal may have interrupted the search of rank 0 for a static
-    /// equilibrium.
+    /// before or has received a signal. The run must not start after a signal: it may have interrupted the search of
+    /// rank 0 for a static equilibrium.
     Json of_first(const Json& mine) const;
     /// Returns `asked` with two changes: the number of threads is that of the launcher if `asked` has none, and ranks
     /// other than 0 print no messages. Throws SceneError for outputs that several ranks cannot write.
     RunOptions options_for(const RunOptions& asked) const;
     /// Divides the world of the scene of rank 0 among the ranks, and returns the part of this rank. Throws SceneError
-    /// if the world holds something that cannot be divided. Afterwards `scene.world` must not be used; gathered_world()
-    /// fills it on rank 0. A single process keeps the world in `scene`.
+    /// if the world holds something that cannot be divided. Afterwards `scene.world` must not be used until
+    /// gathered_world() fills it on rank 0. A single process keeps the world in `scene`.
     World& divide(Scene& scene, OwnerMap owners);
     /// Collective. Returns the whole world on rank 0, null on the other ranks. The first call gathers the world; a
     /// later call does so only if before_advance() was called since the previous call.
     World* gathered_world();
-    /// Must be called before and after each World::advance of the part of this rank. They measure the communication of
-    /// the steps.
+    /// Must be called before and after each World::advance of the part of this rank. These two functions measure the
+    /// communication of the steps.
     void before_advance();
     void after_advance();
 
@@ -87,18 +87,18 @@ public:
     /// Sets the text that rank 0 writes to standard error if the launcher ends the job by a signal, as it does when
     /// another rank has failed.
     void set_last_words(std::string text);
-    /// Handles an error that ended the run of this rank, and returns the exit code. After divide() the other ranks do
-    /// not check for such an error, so this function ends all processes. Before divide(), the ranks compare their
-    /// errors, and rank 0 reports. If MPI does not connect the processes, the first one reports its error, and the
-    /// others return success: if one of them failed, the launcher would end the first process before it reports.
+    /// Handles an error that ended the run of this rank, and returns the exit code. Before divide() the ranks compare
+    /// their errors, and rank 0 reports. After divide() the other ranks do not check for errors, so this function ends
+    /// all processes. If MPI does not connect the processes, the first one reports its error. The others return
+    /// success, because the launcher ends all processes once one of them fails, even before the first one has reported.
     int fail(const std::exception& error);
     /// Collective. Returns the largest exit code of all ranks.
     int last_code(int mine) const;
 
 private:
     explicit RunRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
-    /// Collective. Returns the arguments of all ranks. Throws AgreedError if one of them has a key "error" or a signal,
-    /// or if the values of their key "alike" differ.
+    /// Collective. Returns the arguments `mine` of all ranks. Throws AgreedError if one of these has a key "error" or a
+    /// signal, or if the values of their keys "alike" differ.
     std::vector<Json> agree(const Json& mine) const;
 
     std::unique_ptr<Ranks> ranks_;  // null in a run of one process
@@ -107,7 +107,7 @@ private:
     std::optional<World> part_;
     // traffic counted until the last before_advance(), and the traffic of all calls of World::advance
     RankTraffic before_, in_steps_;
-    // current text, and the previous text, to which signal_note may still point
+    // current text, and the previous text, which stays because a signal handler may still be writing it
     std::array<std::string, 2> last_words_;
 };
 

@@ -10,7 +10,7 @@
 namespace skerry {
 
 struct PoolEnd {
-    // Numbers of the jobs that failed before any signal, and texts that describe how their processes ended.
+    // Numbers of the jobs that failed before the pool received any signal, and texts on how their processes ended.
     std::vector<std::pair<int, std::string>> lost;
     std::vector<int> stopped;  // numbers of the jobs that failed after the first signal to the pool
     int done = 0;              // number of jobs that returned 0

@@ -70,8 +70,8 @@ Share array_share(const Variables& variables) {
 
 Share task_share(const Environment& environment) {
     const Variables variables(environment);
-    // The first launcher in this list whose variables are set counts. Launchers that may be started by another launcher
-    // come first, because a process inherits the variables of both.
+    // The launcher of this process is the first one in this list whose variables are set. A launcher that may be
+    // started by another one stands before it, because the process then has the variables of both.
     struct Launcher {
         const char *rank, *of;
     };

@@ -155,7 +155,7 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& unfinished, in
     return run;
 }
 
-/// True if no case of `own_cases` that has a result failed, was refused or has warnings.
+/// Considers the cases of `own_cases` that have a result. True if none of them failed, was refused or has warnings.
 bool all_good(const SweepPlan& plan, const std::vector<int>& own_cases) {
     return std::ranges::all_of(own_cases, [&](int index) {
         const CaseFile file = plan.read(index);

@@ -20,8 +20,8 @@ void try_assignment(const Place& location, const std::string& key_path, const Js
     called_at(location, [&] { assign(key_path + "=" + value.dump(), scene, json); });
 }
 
-/// Throws SceneError if none of the first hundred cases gives a readable scene. The fault is then probably in the
-/// sweep, not in single cases.
+/// Throws SceneError if none of the first hundred cases gives a readable scene. If they all fail, the fault is probably
+/// in the sweep, not in single cases.
 void require_a_readable_case(const SweepPlan& plan) {
     const SweepFile& file = plan.file;
     constexpr int most_tried = 100;
@@ -42,8 +42,8 @@ void require_a_readable_case(const SweepPlan& plan) {
 }
 
 /// Throws SceneError if an assignment of the sweep names a place that does not exist in the scene. In a list each case
-/// may set other places, so that every case is tested. In all other sweeps all cases set the same places, and the first
-/// case is enough.
+/// may set other places, so every case is tested. In all other sweeps all cases set the same places, so testing the
+/// first case is enough.
 void require_assignable(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;

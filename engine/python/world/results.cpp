@@ -22,7 +22,8 @@ public:
     }
 
 private:
-    std::unordered_map<std::uint32_t, Index> place_;  // key: slot, without generation, as results have no stale handles
+    // Key: slot of a handle. Its generation is not needed, because results contain no handles of removed objects.
+    std::unordered_map<std::uint32_t, Index> place_;
 };
 
 using Triple = std::array<Real, 3>;

@@ -33,7 +33,8 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
 
 /// Results of measure_all(): the measured quantities, and properties of the columns from which they are computed.
 struct Measured {
-    std::vector<Real> scales, until;     // by column: scale (column_scales()), and end of the agreement of the runs [s]
+    // by column: scale (column_scales()), and time until which perturbed runs agree [s]
+    std::vector<Real> scales, until;
     Real agree_until = infinity;         // StudyResult::agree_until
     std::vector<std::size_t> columns{};  // columns with error bars
     std::vector<MeasuredQuantity> quantities{};

@@ -18,7 +18,8 @@ struct Option {
 
 /// Error and cost are predicted for this number of mesh levels beyond the finest one of the runs.
 constexpr int finer_levels = 2;
-constexpr double cost_of_level = 16;  // 8 x elements, 2 x steps; used if the runs lack the level below the finest
+// ratio of the CPU times of two levels: 8 x elements, 2 x steps; used if no ratio was measured
+constexpr double cost_of_level = 16;
 
 std::vector<Option> mesh_options(const StudyFamily& family) {
     std::vector<Option> options;
@@ -59,11 +60,15 @@ bool counts(const MeasuredQuantity& quantity) {
 }
 
 /// Settings with their predicted largest error. `worst`: name of the quantity with this error.
+/// If no settings reach the wanted error, the settings nearest to it are proposed, but neither linear elements nor
+/// meshes that no run has used (see `may_be_nearest`).
 struct Prediction {
     CheapestSettings settings;
     std::string worst{};
-    std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
-    bool may_be_nearest = true;           // false for meshes that no run has used and for linear elements
+    // number of quantities with at most the wanted error, and of all for which counts() is true
+    std::size_t within = 0, counted = 0;
+    // true if these settings may be proposed when no settings reach the wanted error
+    bool may_be_nearest = true;
 };
 
 Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,

@@ -42,8 +42,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     const auto be_coarse = [&] {
         shape_ = ConvergenceShape::coarse;
         used_order_ = 0;
-        // The error may be as large as the value itself. The value of a position may contain a large offset, so the
-        // error is at most `size` plus the difference of the levels.
+        // The error may be as large as the value itself. A position, however, may contain a large constant part, which
+        // has no error. Its error is at most `size`, the size of its change, plus the difference of the levels.
         least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
     };
     const bool differs_much = std::abs(difference) > coarse_share * size;
@@ -59,8 +59,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
-        // The differences of successive levels have opposite signs if two terms of the error do, such as a h^2 and b
-        // h^3 with a b < 0. Such an error is below the estimate with order 1.
+        // Successive differences have opposite signs if two terms of the error do, such as a h^2 and b h^3 with a b <
+        // 0. The estimate with order 1 is kept here, because it is above such an error.
     } else if (order_ < near_least * theory.least) {
         // An order near 0 predicts an unbounded error, so the estimate is limited to the sum of both differences.
         shape_ = ConvergenceShape::slow;
@@ -68,8 +68,9 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         remainder_ = std::abs(coarse_difference + difference);
         if (order_ > 0) remainder_ = std::min(remainder_, remainder(order_));
         if (order_ > 0 || !differs_much) return;
-        // Levels that lock, such as a single layer of linear elements, change more from level to level until they are
-        // fine enough. The bound assumes that the difference grows once more, and falls after that.
+        // Meshes that lock (are far too stiff), such as a single layer of linear elements, change the value more from
+        // level to level until they are fine enough. The bound assumes that the difference grows once more, by at most
+        // the last factor, and falls after that.
         be_coarse();
         const Real growth = std::min(std::abs(difference / coarse_difference), std::pow(ratio, theory.most));
         remainder_ = std::max(remainder_, growth * (std::abs(difference) + remainder(theory.least)));

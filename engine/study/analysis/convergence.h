@@ -21,12 +21,13 @@ struct TheoryOrder {
 };
 
 /// Behaviour of the differences between successive levels.
-/// - unmeasured: there is one level only.
-/// - two_levels: two levels give a difference and no order.
+/// - unmeasured: there is only one level, or no level with h = 1.
+/// - two_levels: two levels give a difference and no order, nor do three levels without a constant ratio of h.
 /// - coarse: two levels differ so much that both have large errors, and no third level shows that the differences
 ///   decrease.
 /// - regular: the observed order is near that of the theory.
-/// - equal: the differences are not above the noise.
+/// - equal: the finest two levels do not differ by more than the noise, which is the size of differences without
+///   meaning.
 /// - slow: the observed order is far below that of the theory, or the differences grow.
 /// - fast: the observed order is far above that of the theory, so the coarse levels do not converge with the order of
 ///   the theory yet.
@@ -38,15 +39,15 @@ class Convergence {
 public:
     Convergence() = default;
     /// Levels with values that are not finite are omitted. Without a level with h = 1, or with only one level, the
-    /// error stays unmeasured. `noise` is the size of differences without meaning, for example that of rounding errors.
-    /// `size`: size of the value. Two levels that differ by more than 30 % of it are too coarse for an error estimate
-    /// by an order.
+    /// error stays unmeasured. `noise`: size of differences without meaning, for example rounding errors. `size`:
+    /// typical size of the value. If two levels differ by more than 30 % of it, they are too coarse to estimate the
+    /// error from an order of convergence.
     Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise, Real size = infinity);
 
     ConvergenceShape shape() const { return shape_; }
     /// Observed order; NaN unless three levels with a constant ratio of h differ by more than the noise.
     Real order() const { return order_; }
-    /// True if the error does not follow from an order that the theory predicts.
+    /// True if the differences do not follow any order of convergence that the theory predicts.
     bool irregular() const;
     /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
     Real error() const { return error_at(1); }

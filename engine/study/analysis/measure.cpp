@@ -12,7 +12,7 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real matters = 0.2;  // fraction of the error bar below which a part without regular convergence is ignored
+constexpr Real matters = 0.2;  // fraction of the error bar; irregular parts of the error below it are ignored
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -76,8 +76,9 @@ bool is_contact(const StudyVariant& v) {
 
 /// Growth of a stress figure, such as the largest value of a column, from mesh to mesh.
 struct StressGrowth {
-    std::vector<Real> rates{};  // between successive meshes: a, if the stress grows as h^-a; from coarse to fine
-    bool same_place = false;    // true if the two finest meshes have their largest stress near one place
+    // exponents a of growth h^-a with the edge length h, between successive meshes, coarse to fine
+    std::vector<Real> rates{};
+    bool same_place = false;  // true if the two finest meshes have their largest stress near one place
 
     StressGrowth(const StudyFamily& family, std::size_t column, StudyFigure figure) {
         const StudyColumn& scene = family.scene->columns[column];
@@ -218,7 +219,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     if (std::isnan(r.contact))
         return decide(StudyVerdict::not_measured,
                       "the contact error is unknown, because no run with another tolerance has a result");
-    constexpr Real share_of_wanted = 0.1;  // share of the wanted error below which irregular parts are ignored
+    // fraction of the wanted error; irregular parts of the error below it are ignored
+    constexpr Real share_of_wanted = 0.1;
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
         if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted_error * r.scale)
@@ -267,10 +269,11 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
         if (v.element) quantity.elements.emplace_back(v, value);
     }
-    constexpr Real rounding = 1e-9;  // assumed bound of the rounding errors of a run, divided by the scale
+    constexpr Real rounding = 1e-9;  // assumed upper limit of the rounding errors of a run, divided by the scale
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
-    if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
+    // errors of the solver are noise here, too
+    if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());
     quantity.mesh = Convergence(mesh, mesh_theory(series), noise, family.sizes[column]);
     quantity.step = Convergence(step, step_theory(*family.scene), noise, family.sizes[column]);
     r.expected_mesh_order = mesh_theory(series).least;
@@ -283,7 +286,8 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
-    // Flat faces affect only the change of a length, not its offset, so the size of the column limits this error.
+    // Flat faces cause an error of the change of a length since the start, but not of its constant part. The error is
+    // therefore relative to at most the size of the column, which is the largest change.
     quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
     r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);

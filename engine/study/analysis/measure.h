@@ -14,19 +14,19 @@ namespace skerry {
 /// - end: value in the last row.
 /// - largest, smallest: extreme value of all rows.
 /// - mean: mean over time.
-/// - agreed: value in the last row in which perturbed runs agree.
+/// - agreed: value in the last row up to which runs agree whose starts differ by 1e-12 m.
 enum class StudyFigure { end, largest, smallest, mean, agreed };
 
-/// Runs of a study that can be compared.
+/// The runs of a study, and the selection of those that can be compared with each other.
 struct StudyFamily {
     const std::vector<StudyRun>* all = nullptr;
-    const StudyRun* scene = nullptr;  // the scene as it is
+    const StudyRun* scene = nullptr;  // run of the scene as it is
     // Runs that ended well and have the columns and the number of rows of `scene`; includes `scene`.
     std::vector<const StudyRun*> comparable{};
     std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
-    // For each column: 0, or if its values are only errors of the contact solver or of the steps, their largest size in
-    // all runs. Such values are recognised by a run with a lower tolerance or shorter steps, in which they fall below a
-    // third.
+    // For each column: its largest size in all runs, if its values are only errors of the contact solver or of the
+    // steps; else 0. The values count as such errors if a lower tolerance or shorter steps reduce the size of the
+    // column to less than a third.
     std::vector<Real> zero_within{};
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
@@ -40,7 +40,7 @@ private:
 struct MeasuredQuantity {
     StudyQuantity result;
     Convergence mesh{}, step{}, contact{};
-    Real noise = 0;  // largest difference between a perturbed run and the scene as it is
+    Real noise = 0;  // largest difference between a run with a perturbed start and the run `scene`
     std::vector<std::pair<StudyVariant, Real>> elements{};  // (variant, value) of runs with other elements
     Real shape = 0;       // part of the mesh error that refinement does not reduce, see StudyColumn::shape_error
     Real least_mesh = 0;  // lower bound of the mesh error of linear elements, from a comparison with smoothed elements
@@ -51,14 +51,17 @@ struct MeasuredQuantity {
 /// probe, and all forces of a probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
-/// Returns the scale of each column, to which its errors are relative: its size, but at least
-/// - for lengths the rounding error of the size of the body,
-/// - for energies the rounding error of the largest energy of the probe,
-/// - for all but energies a millionth of the largest size of all columns with this unit,
-/// - the difference that the perturbation of the start makes in the first row, divided by agreement_share.
+/// Returns the scale of each column, to which its errors are relative. The scale is the size of the column (see
+/// column_sizes()), but at least
+/// - for lengths: the rounding error of a length as large as the body,
+/// - for energies: the rounding error of the largest energy of the probe,
+/// - for all but energies: a millionth of the largest size of all columns with this unit,
+/// - for all columns: the difference that the perturbation of the start makes in the first row, divided by
+///   agreement_share.
 std::vector<Real> column_scales(const StudyFamily& family);
 
-/// Returns the figures of a column for which the study reports an error bar.
+/// Returns the figures of a column for which the study reports an error bar. `agree_until` and `scale` belong to the
+/// column.
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);
 
 /// Measures a figure of a column. `scale` and `agree_until` belong to the column, `wanted_error` is the wanted relative

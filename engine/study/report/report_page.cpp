@@ -22,7 +22,7 @@ std::string error_heading(const StudyQuantity& q) {
     return "error of " + heading(q);
 }
 
-/// True for a quantity that is zero except for rounding, such as a component of a vector.
+/// True for a quantity that is zero except for rounding, such as the horizontal component of a vertical force.
 bool is_zero(const StudyQuantity& q) {
     constexpr Real rounding = 1e-9;
     return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= rounding * q.scale;

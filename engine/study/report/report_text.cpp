@@ -60,8 +60,8 @@ std::string quantities_text(const StudyResult& result) {
             shown.push_back(&q);
     }
     std::stable_partition(shown.begin(), shown.end(), [](const StudyQuantity* q) { return !is_minor(*q); });
-    // Statistics of all bodies come first: the study contains them if the scene has many bodies or if bodies move
-    // chaotically.
+    // Statistics of all bodies come first. The study contains them only if the scene has many bodies, or if bodies move
+    // chaotically. Then they say more than the values of single bodies.
     std::stable_partition(shown.begin(), shown.end(), [&](const StudyQuantity* q) { return is_statistic(*q, result); });
     const std::size_t omitted = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
     shown.resize(shown.size() - omitted);

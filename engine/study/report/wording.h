@@ -16,14 +16,16 @@ struct QuantityText {
     std::string value, error, unit;  // error: empty if unknown, or if the value is "zero within" a number
     std::string parts;               // parts of the error, for example "mesh 2.6, step 0.1"; empty if zero or unknown
     std::string best, best_error;    // extrapolated value and its error; empty if unknown
-    std::string share;               // error relative to the scale [%]; names the scale if the value differs from it
-    std::string orders;              // for example "order 1.9 (2 expected)"; empty if unknown
+    // error divided by StudyQuantity::scale [%]; also contains the scale, if it differs from the value
+    std::string share;
+    std::string orders;  // for example "order 1.9 (2 expected)"; empty if unknown
 };
 QuantityText quantity_text(const StudyQuantity& quantity);
 
-/// One line for all quantities with the same verdict and sentence; quantities with the verdict `known` have no line.
+/// Returns one line for each group of quantities with the same verdict and sentence. Quantities with the verdict
+/// `known` have no line.
 std::vector<std::string> verdict_lines(const StudyResult& result);
-/// One line for all runs that have no result for the same reason.
+/// Returns one line for each group of runs that have no result for the same reason.
 std::vector<std::string> missing_lines(const StudyResult& result);
 
 }  // namespace skerry

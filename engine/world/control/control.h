@@ -51,8 +51,8 @@ void hold_here(Model& model, std::size_t body, Real now);
 /// slot of this object is reused, because the table of disabled pairs names objects by slot.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
-/// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
-/// ColliderTable, depending on `kind`.
+/// Enables the collisions of a pair again, during a call of advance. Does nothing if they are not disabled. `first`:
+/// row of BodyTable; `second`: row of BodyTable or ColliderTable, depending on `kind`.
 void enable_pair(WorldState& world, PairKind kind, Index first, Index second);
 
 // control_cables.cpp
@@ -63,15 +63,15 @@ CableState cable_state(const WorldState& state, CableHandle cable);
 // control_cavities.cpp
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity);
-/// Stores the present face positions of a body's open cavities with a gas or a liquid. The volume of such a cavity is
-/// updated by the volume that its faces sweep from the stored positions. Must be called after nodes were placed between
-/// steps, so that the placement does not change the volume.
+/// Stores the present face positions of a body's open cavities with a gas or a liquid. Steps change the volume of such
+/// a cavity by the volume that its faces sweep from the stored positions. Must be called after nodes were placed
+/// between steps, so that the placement does not change the volume.
 void renew_corners(Model& model, std::size_t body);
 
 // control_dynamics.cpp
 
-/// Sets the strains of the springs of the Maxwell elements of an explicit body as if the body had been held in its
-/// present shape for a long time, so that all viscous stress has relaxed.
+/// Lets all viscous stress of an explicit body relax: the springs of its Maxwell elements get the strains that they
+/// would have after a long time in the present shape.
 void relax_fully(Model& model, std::size_t body);
 
 // control_joints.cpp
@@ -89,8 +89,8 @@ SurfaceSettings set_values_of(const SurfaceProperties& surface);
 
 /// Returns the state of a tie, with the forces of the last step.
 TieState tie_state(const WorldState& world, TieHandle tie);
-/// Enables the collisions that a tie has switched off, for each tie of which no node holds any more, unless another tie
-/// keeps them off. Must be called after a step in which the last node of a tie has broken off.
+/// Finds the ties whose nodes have all broken off, and enables the collisions that such a tie had switched off, unless
+/// another tie keeps them off. Must be called after a step in which the last node of a tie has broken off.
 void release_ties(WorldState& world);
 
 // control_fibres.cpp

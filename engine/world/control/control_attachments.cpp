@@ -15,7 +15,8 @@ namespace skerry {
 
 namespace {
 
-// Largest cosine of the angle between two directions that count as perpendicular.
+// Two directions count as perpendicular if the absolute cosine of their angle is at most this number. They count as
+// parallel if the cosine is at least 1 minus this number.
 constexpr Real least_oblique = 1e-9;
 
 /// Returns the matrix for AttachmentTable::held. Its columns are the unit vectors of the directions. No directions, or
@@ -38,7 +39,7 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
 }
 
 /// Throws SceneError if nodes cannot be held along single directions: the body is not explicit, or another attachment
-/// holds one of the nodes along an oblique direction.
+/// holds one of the nodes along a direction that is neither perpendicular nor parallel to these directions.
 void require_axes(const Model& model, std::size_t body, std::span<const Index> nodes, const Mat3& held) {
     const std::string& name = model.body_records[body].name;
     if (model.has_frame(body))
@@ -107,7 +108,8 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    // All pairs of the body are searched again: the last search assumed the speeds that the held nodes had before.
+    // The contact pairs of the body are searched again, because the last search assumed the earlier speeds of the nodes
+    // that are now held.
     state_->cache.forget_body(model, b);
     if (!holds_completely(held)) model.clusters_open = true;
     state_->edits.rows = state_->edits.elements = true;

@@ -41,7 +41,8 @@ Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> posit
 void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
     const RigidFit fit = fit_rigid_body(model, body, position);
-    // largest distance of a node from the rigid shape, as a fraction of the mean edge length
+    // upper limit on the distance of a node from the rigid shape, divided by the mean edge length; allows for rounding
+    // errors
     constexpr Real rounding = 1e-6;
     if (fit.misfit > rounding * model.bodies.mean_edge[body])
         refuse(title_of_body(model, body), "position",
@@ -85,7 +86,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
-        // moves the displacement origin along, so that the measured displacement does not change
+        // The origin of BodyTable::displacement moves along, so that the measured displacement does not change.
         origin[n] += position[n] - target[n];
         target[n] = position[n];
     }
@@ -145,7 +146,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     }
     if (!changed) return;
     if (model.has_frame(row)) follow_node_velocities(model, row);
-    // all pairs of the body must be searched again, because the last contact search assumed the old speeds
+    // all contact pairs of the body must be searched again, because the last search assumed the old speeds
     state_->cache.forget_body(model, row);
     state_->record.balance.close();
     model.wake(row);

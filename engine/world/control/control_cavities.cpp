@@ -49,8 +49,9 @@ Vec3 rest_area(const Model& model, std::size_t body, const Face& face, Vec3& cor
     return area_of(x);
 }
 
-/// Faces around all hollows inside of a body: the connected parts of its surface that enclose a volume outside of the
-/// body. If there is no hollow, all faces.
+/// Faces around all hollows inside a body, or all faces of its surface if there is no hollow. A connected part of the
+/// surface bounds a hollow if its signed volume is negative. Its normals, which point out of the body, then point into
+/// the enclosed space.
 std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
     const std::vector<Face>& surface = model.body_records[body].surface;
     std::vector<std::size_t> parent(static_cast<std::size_t>(model.bodies.nodes[body].size()));
@@ -62,7 +63,7 @@ std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
     };
     for (const Face& face : surface)
         for (const Index n : face) parent[root(n)] = root(face[0]);
-    std::vector<Real> outward(parent.size(), 0);  // at the root of each part: signed volume, < 0 around a hollow [m^3]
+    std::vector<Real> outward(parent.size(), 0);  // by root of a connected part: its signed volume [m^3]
     for (const Face& face : surface) {
         Vec3 corner;
         const Vec3 area = rest_area(model, body, face, corner);
@@ -104,8 +105,8 @@ std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::
     return faces;
 }
 
-/// Returns an edge that shows that the faces do not form a closed surface: they pass it more often in one direction
-/// than in the other. Returns {no_index, no_index} if there is no such edge.
+/// Returns an edge that shows that the faces do not form a closed surface: the faces at this edge pass it more often in
+/// one direction than in the other. Returns {no_index, no_index} if there is no such edge.
 std::pair<Index, Index> open_edge(const std::vector<Face>& faces) {
     std::map<std::pair<Index, Index>, int> sum;
     for (const Face& face : faces)

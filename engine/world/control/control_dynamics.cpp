@@ -118,7 +118,7 @@ std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const 
         shape.push_back(pose.rotation.transpose() * (x - pose.position));
         largest = std::max(largest, (shape.back() - mesh_shape[shape.size() - 1]).norm());
     }
-    // Smaller displacements, divided by the mean edge length, are rounding errors of the fitted pose.
+    // Displacements up to this fraction of the mean edge length count as rounding errors of the fitted pose.
     constexpr Real rounding = 1e-12;
     if (!(largest > rounding * model.bodies.mean_edge[body])) shape.clear();
     return shape;

@@ -167,7 +167,8 @@ FibreSettings Fibres::settings(FibreHandle fibres) const {
     for (auto t = static_cast<std::size_t>(table.tetrahedra[row].begin);
          t < static_cast<std::size_t>(table.tetrahedra[row].end); ++t) {
         settings.tetrahedra.push_back(table.tetrahedron[t]);
-        // direction d: the sum, over the nodes, of the shape function's derivative along d times the rest position
+        // Restores the direction d: it is the sum over the nodes of (derivative of the node's shape function along d) *
+        // (rest position of the node).
         Vec3 along = Vec3::Zero();
         for (std::size_t a = 0; a < 4; ++a)
             along += table.slope[t][a] * rest[static_cast<std::size_t>(table.node[t][a])];

@@ -168,7 +168,8 @@ PointVelocity velocity_at(const Model& model, Index body, const Vec3& point) {
     return {table.momentum[r] / table.mass[r] + turn.cross(point - table.center[r]), turn};
 }
 
-/// True if another joint of the same two bodies switches off collisions between them.
+/// True if another joint of the same two bodies also switches off their collisions. They then stay off when this joint
+/// is removed.
 bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
         const bool same_pair = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||
@@ -178,8 +179,8 @@ bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     return false;
 }
 
-/// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset.
-/// OfHead is this relation of a joint to its head, the last joint of its chain of leaders.
+/// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset. The
+/// leader can mimic a further joint. OfHead relates a joint in this way to its head, the last joint of this chain.
 struct OfHead {
     Index head;
     Real ratio = 1, offset = 0;

@@ -14,7 +14,7 @@ namespace skerry {
 
 namespace {
 
-/// Copy of the element data, node masses and stable steps of a body. put_back() restores them if a change of its
+/// Copy of the element data, node masses and stable steps of a body. put_back() restores them if a change of the body's
 /// material fails.
 class KeptBody {
 public:
@@ -178,8 +178,9 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     if (next.sets_losses)
         for (const std::size_t body : bodies)
             if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) refuse_losses(model.body_records[body].name);
-    // Explicit bodies come first, because only they can fail, for lack of a stable step. Rigid and implicit bodies are
-    // then still unchanged, so KeptBody need not restore their masses.
+    // Explicit bodies are changed first, because only they can fail: the new material may leave them without a stable
+    // step. At a failure, rigid and implicit bodies are thus still unchanged, and KeptBody need not restore their
+    // masses.
     std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });
     next.write(model.materials, static_cast<std::size_t>(row));
     if (!now.same_elements(next)) {

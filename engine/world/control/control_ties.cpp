@@ -94,7 +94,7 @@ struct OnSurface {
     Vec3 weight = Vec3::Zero();
 };
 
-/// Point nearest to `point` on the surface of `body`, which is the second body or the mesh of the collider.
+/// Point nearest to `point` on the surface of `body`: the second body of the tie, or the mesh of its collider.
 OnSurface on_triangles(WorldState& world, const TiedObjects& objects, std::size_t body, const Vec3& point) {
     const Model& model = world.model;
     const std::optional<TrianglePoint> found = nearest_point(fitted_tree(world, body), point, infinity);
@@ -197,8 +197,8 @@ void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& r
     table.broken.push_back(infinity);
 }
 
-/// Appends a tied node. `point`: element of tied_points() for the node [m]. On a deformable body, the offset from the
-/// nearest surface point is stored (TieTable::place).
+/// Appends a tied node. `point`: element of tied_points() for the node [m]. If the node is tied to a deformable body,
+/// TieTable::place gets an offset from the nearest surface point, otherwise a position in the frame of the object.
 void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
               Index node, const Vec3& point) {
     Model& model = world.model;
@@ -226,7 +226,8 @@ void wake_tied(Model& model, std::size_t tie) {
     if (model.ties.second[tie] != no_index) model.wake(static_cast<std::size_t>(model.ties.second[tie]));
 }
 
-/// True if another tie of the same two objects switches off their collisions.
+/// True if another tie of the same two objects also switches off their collisions. They then stay off when this tie is
+/// removed or breaks.
 bool parted_by_another(const TieTable& ties, std::size_t tie) {
     for (std::size_t other = 0; other < ties.size(); ++other) {
         const bool same_pair =

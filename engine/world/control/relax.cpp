@@ -21,8 +21,8 @@ namespace skerry {
 
 namespace {
 
-// Number of successive steps in which all bodies must be in balance. In a vibration the forces balance for a moment
-// only.
+// Number of successive steps in which all bodies must be in balance. One step is not enough, because in a vibration the
+// forces balance for a moment.
 constexpr int calm_steps = 10;
 
 /// Makes the time table of a row constant: all its keys get one value.
@@ -50,9 +50,9 @@ void hold_values(Model& model, Real t) {
     std::ranges::fill(model.ties.break_force, infinity);
 }
 
-/// Multiplies forces, tractions, acceleration fields, prescribed pressures, and tensions of cables and fibres at the
-/// time `t` by `load_fraction`. Gravity factors and drag keep their values. `full_loads`: the model before
-/// hold_values(), with the full values.
+/// Sets loads of nodes, forces, tractions, acceleration fields, prescribed pressures, and tensions of cables and fibres
+/// to `load_fraction` times their values at the time `t`. Gravity factors and drag keep their values. `full_loads`: the
+/// model before hold_values(), with the full values.
 void set_load_fraction(Model& model, const Model& full_loads, Real t, Real load_fraction) {
     const auto scale_keys = [&](auto& table, const auto& from, std::size_t row) {
         hold_keys(table, row, load_fraction * value_at(from.keys_of(row), t));
@@ -88,7 +88,8 @@ void take_motion(auto& target, const auto& source) {
     target.motion = source.motion;
 }
 
-/// Gives a cable the work and the dissipated energy that it has in the world `source`.
+/// Gives a cable the work and the dissipated energy that it has in the world `source`, so that the relaxation adds
+/// nothing to them.
 void take_work(WorldState& target, const WorldState& source, std::size_t cable) {
     const CableHandle handle = target.model.cable_map.handle_of_slot(target.model.cables.slot[cable]);
     const CableState before = cable_state(source, handle), now = cable_state(target, handle);
@@ -117,7 +118,7 @@ void take_values(Model& target, Model& source) {
 void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
     world.model.settings.sleep = sleep;
     world.model.settings.tolerance = tolerance;
-    // force interval of the last step, from which the forces of its contacts are computed [s]
+    // time for which the forces of the last step acted; the contact forces of that step are computed with it [s]
     const Real kick_time = world.scratch.parameters.kick_time;
     world.scratch.parameters = step_parameters(world.model.settings, world.model.tuning);
     world.scratch.parameters.kick_time = kick_time;
@@ -240,7 +241,8 @@ private:
         for (const BodyBalance& balance : bodies_) largest_ = std::max(largest_, balance.out_of_balance);
     }
 
-    /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual. A body is
+    /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual
+    /// (out-of-balance force divided by forces). A body is in balance if its residual is at most the tolerance. It is
     /// slow if its momentum is at most tolerance * forces * `time`. `time`: time for which all bodies have been in
     /// balance [s]. Without weights, loads and contacts, `largest_` replaces the forces.
     bool find_worst(Real time, RelaxReport& report) const {
@@ -280,7 +282,7 @@ private:
     UnionFind sets_;                     // sets of bodies that joints, ties and the like connect
     std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;    // by body
-    std::vector<Real> kinetic_, sum_{};  // kinetic energies before, after this step, at the root of each set [J]
+    std::vector<Real> kinetic_, sum_{};  // kinetic energies before and after this step, by root of a set [J]
     Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
 };
 
@@ -294,7 +296,7 @@ void prepare(WorldState& world, Real t, Real tolerance) {
     note_changed_seams(world.model);
 }
 
-/// Relaxes `copy` with growing shares of the loads of `unrelaxed`, until the whole loads are reached. If a relaxation
+/// Relaxes `copy` with growing fractions of the loads of `unrelaxed`, until the full loads are reached. If a relaxation
 /// fails, returns to the last equilibrium and halves the increment of the loads.
 RelaxReport grow_loads(World& copy, const WorldState& unrelaxed, const RelaxSettings& settings,
                        const std::function<bool(const RelaxReport&)>& go_on) {

@@ -18,7 +18,8 @@ namespace skerry {
 namespace {
 
 /// Sets to zero the impulses and forces that the last step has stored for contacts, joints, ties, cables, fibres and
-/// springs of a body, because the next step would start from them. Joints return to their first coordinates.
+/// springs of a body, because the next step would start from them. Joints get back the coordinates with which they were
+/// added.
 void forget_impulses(WorldState& world, std::size_t body) {
     Model& model = world.model;
     const std::uint32_t slot = model.bodies.slot[body];
@@ -84,7 +85,8 @@ void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
         }
         elements.rotation_next[b] = elements.rotation[b];
     }
-    // The implicit elements of the clusters were chosen for the deformed shape, so they must be chosen again.
+    // The clusters (groups of nodes whose elements are integrated implicitly) were chosen for the deformed shape, so
+    // they must be chosen again.
     model.clusters_open |= model.bodies.cluster_step[body] > 0;
 }
 

@@ -41,8 +41,8 @@ Real bar_speed(const Model& model, const NewBody& body, std::span<const Material
     return std::sqrt(std::sqrt(stiffness / compliance) * volume / mass);
 }
 
-/// Sets the relaxation rates of the elements of a body. `step`: stable step of the body without relaxation [s].
-/// `speed`: result of bar_speed [m/s].
+/// Sets the rates at which the Maxwell elements of a body relax. `step`: stable step of the body without Maxwell
+/// elements [s]. `speed`: result of bar_speed [m/s].
 void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real speed,
                     Real step) {
     ElementBlockTable& elements = model.elements;
@@ -64,7 +64,8 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
         const Index material = body.material_of(t);
         auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
         if (zone == zones.end()) {
-            // Plastic flow keeps the volume, so elements that yield are chosen as for an incompressible material.
+            // Plastic flow keeps the volume, so the element kind for a material that yields is chosen as for an
+            // incompressible material.
             const auto row = static_cast<std::size_t>(material);
             const Real poisson_ratio =
                 model.materials.constants[row].yields() ? 0.5 : model.materials.poisson_ratio[row];
@@ -165,8 +166,9 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    // Nodes without a tetrahedron would get the inverse mass 0, as if they were held. The nodes of rigid bodies
-    // therefore get positive masses here, which share_mass() replaces later.
+    // Nodes without a tetrahedron would get the inverse mass 0, as if they were held. In a rigid body without
+    // tetrahedra, or with a given mass, all nodes therefore start with positive masses, which share_mass() replaces
+    // later.
     if (body.tetrahedra.empty() || body.mass) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
     add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
@@ -190,13 +192,14 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // The mass forms (mass_forms.h) of a large body are verified for groups of elements instead of the whole body,
-    // which lengthens the stable step less or not at all. They are dropped if they do not lengthen it.
+    // Mass forms (mass_forms.h) divide the node masses among the elements, to lengthen the stable step. In a large body
+    // their sum is verified for groups of elements instead of the whole body. They then lengthen the stable step less,
+    // or not at all, and are dropped if they do not lengthen it.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
-    // Frame masses (frame_masses.h) are chosen for linear elements only. The mass forms of smoothed elements already
-    // allow steps near the stability limit. Still closer to the limit, the energies of the highest frequencies would be
-    // less accurate.
+    // Frame masses (mass shares for a body that rotates as a whole, frame_masses.h) are chosen for linear elements
+    // only. The mass forms of smoothed elements already allow steps near the stability limit. With longer steps, the
+    // energies of the highest frequencies would be less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     // A body that yields gets no frame masses either, because frame masses are not updated after plastic flow.
     const auto b = static_cast<std::size_t>(row);
@@ -269,8 +272,8 @@ void take_steps(const KnownElements& known, Index row, Model& model) {
 }
 
 void remember_elements(Model& model, Index row, KnownElements known) {
-    // Largest number of entries. It limits the time of known_elements(), which compares each new mesh with the mesh of
-    // every entry.
+    // Largest number of entries in Model::known_elements. It limits the time of known_elements(), which compares each
+    // new mesh with the mesh of every entry.
     constexpr std::size_t most_known = 64;
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     known.body = row;

@@ -19,8 +19,8 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
     return script;
 }
 
-/// Pose at time 0 of an object that has the pose `pose` at the time `now` and moves at constant velocities. It is
-/// stored beside the script of the object, because scripts of new objects start at time 0.
+/// Returns the initial pose that is stored for a new object: its pose at time 0, at which its script starts. The object
+/// has the pose `pose` at the time `now` and moves at constant velocities.
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
@@ -62,8 +62,8 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Motion of the shape of a collider. Keys give poses of the shape frame, not of the collider frame, as move_to and
-/// set_pose do. If no key has a rotation, the shape keeps the rotation of `placed`, its pose without keys.
+/// Motion of the shape of a collider. Like move_to and set_pose, keys give poses of the shape frame, not of the
+/// collider frame. If no key has a rotation, the shape keeps the rotation of `placed`, its pose without keys.
 Motion motion_of_shape(const Motion& motion, const RigidPose& placed) {
     Motion of_shape = motion;
     if (!motion.turns())

@@ -25,8 +25,8 @@ struct NewBody {
     std::span<const Index> tetrahedron_material = {};
     Index collider = no_index;
     Real contact_distance = -1;  // contact distance [m]; negative: 2 % of the mean surface edge is used
-    // Number of core nodes, which define the shape of a round body (see BodyTable). All other nodes of a round body
-    // only draw it. With 0 the body is not round.
+    // Number of core nodes, which define the shape of a round body: a sphere, capsule or cylinder (see BodyTable). Its
+    // other nodes serve only to draw it. 0: the body is not round.
     Index core_nodes = 0;
     Real round_radius = 0;  // [m]
     std::span<const Vec3> nodes;
@@ -63,8 +63,8 @@ struct NewBody {
 /// Density of each tetrahedron [kg/m^3].
 std::vector<Real> densities(const Model& model, const NewBody& body);
 
-/// Lists the tetrahedra that each element of a body covers, in the order of the lanes in the body's element blocks.
-/// `element_at`: number of the element in each lane; no_index in an unused lane.
+/// Lists the tetrahedra that each element of a body covers, in the order of the SIMD lanes in the body's element
+/// blocks. `element_at`: number of the element in each lane; no_index in an unused lane.
 Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at);
 
 /// Appends a body that consists of a surface, with or without tetrahedra. Returns its row. `stiffness_sum`: working
@@ -118,14 +118,15 @@ MassProperties mass_properties(const Model& model, const NewBody& body);
 /// Adds the lumped masses of the tetrahedra to the node masses, and sets the inverse masses. An inverse mass above 0
 /// lets a node move.
 void set_masses(Model& model, const NewBody& body, Range nodes);
-/// Finds the mass forms of a body whose mass shares are known, and the frame masses of linear elements (mass_forms.h,
-/// frame_masses.h). Mass forms are dropped if they do not lengthen the stable step at rest. Frame masses are dropped if
-/// they do not lengthen it by a tenth. Returns the stable step at rest [s].
+/// Finds the mass forms of a body and, for linear elements, the frame masses: divisions of the node masses among the
+/// elements that can lengthen the stable step (mass_forms.h, frame_masses.h). The mass shares must be known. Mass forms
+/// are dropped if they do not lengthen the stable step at rest. Frame masses are dropped if they do not lengthen it by
+/// a tenth. Returns the stable step at rest [s].
 Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
 /// Removes the mass forms and frame masses of the elements in `blocks`.
 void forget_mass_forms(Model& model, Range blocks);
-/// Finds relaxation, mass shares and the stable step at rest of the elements of a body. The elements must not be
-/// rotated, and must have no mass forms, frame masses or relaxation yet.
+/// Finds the relaxation rates and mass shares of the elements of a body, and its stable step at rest. The elements must
+/// not be rotated, and must have no mass forms, frame masses or relaxation rates yet.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 Column<Real>& stiffness_sum);
 /// Computes masses and stable steps of a body again after its materials have changed. Stored results of earlier bodies
@@ -136,8 +137,8 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
 const KnownElements* known_elements(const Model& model, const NewBody& body);
 /// Copies stored results to a new body. This replaces a call of find_steps. The elements must not be rotated yet.
 void take_steps(const KnownElements& known, Index row, Model& model);
-/// Stores the results of find_steps for later bodies with the same mesh. `places`: lane of each element in the element
-/// blocks of the body.
+/// Stores the results of find_steps for later bodies with the same mesh. `places`: SIMD lane of each element in the
+/// element blocks of the body.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 /// Stores `trial`, computed by choose_dynamics() for the body `row`, for use by later bodies with the same mesh.
 void remember_elements(Model& model, Index row, KnownElements trial);

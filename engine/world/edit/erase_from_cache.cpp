@@ -55,7 +55,7 @@ private:
     PairTable& pairs_;
 };
 
-/// Calls renumber(row) for each row with is_gone(row) false. Returns the ranges of all other rows.
+/// Returns the ranges of the rows for which is_gone(row) is true, and calls renumber(row) for all other rows.
 std::vector<Range> take_rows(std::size_t count, auto&& is_gone, auto&& renumber) {
     std::vector<Range> removed;
     for (std::size_t row = 0; row < count; ++row) {

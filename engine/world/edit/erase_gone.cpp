@@ -166,8 +166,8 @@ void erase_colliders(const RowMoves& moves, Model& model) {
         if (collider != no_index) collider = moves.collider_now[static_cast<std::size_t>(collider)];
 }
 
-/// Renumbers the nodes and bodies of clusters. No cluster belongs to a removed body, because all clusters are cleared
-/// before a body with elements is removed, and found again later.
+/// Renumbers the nodes and bodies of clusters (groups of nodes that implicit elements couple). No cluster belongs to a
+/// removed body, because all clusters are cleared before a body with elements is removed, and found again later.
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)

@@ -19,8 +19,8 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
 
 // erase_gone.cpp
 
-/// Removes the rows of erased bodies and colliders from the model. Also removes the element patches of the first erased
-/// body and of all later bodies; Model::extend_derived builds these patches again.
+/// Removes the rows of erased bodies and colliders from the model. Also removes the patches (groups of neighbouring
+/// element blocks) of the first erased body and of all later bodies; Model::extend_derived builds these patches again.
 void erase_gone(const RowMoves& moves, Model& model);
 /// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `down`: for
 /// each table, the number that is subtracted from each reference to a row of this table.

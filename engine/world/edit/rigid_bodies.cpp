@@ -48,9 +48,10 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large
-/// (StiffBody::becomes_large). For a free body, also computes the moments of inertia and the principal axes: at large
-/// strain those of the deformed shape, and when large strain ends those of the rest shape.
+/// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large, the
+/// mark of bodies with large strain (StiffBody::becomes_large). For a free body, also computes the moments of inertia
+/// and the principal axes: at large strain those of the deformed shape, and when large strain ends those of the rest
+/// shape.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -436,8 +437,9 @@ void follow_node_velocities(Model& model, std::size_t body) {
 
 namespace {
 
-/// Energies and momenta of a held body, summed over the nodes n for which counts(n) is true. They are computed from
-/// nodes, because the motion of the frame is prescribed. The elastic energy is always that of the whole body.
+/// Energies and momenta of a held body, summed over the nodes n for which counts(n) is true. Nodes are used, because
+/// the row of a held body in RigidBodyTable has no momentum: the motion of its frame is prescribed. The elastic energy
+/// is always that of the whole body.
 RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
     RigidSums sums;
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {

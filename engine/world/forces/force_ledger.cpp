@@ -40,8 +40,8 @@ bool rests(const Model& model, Index body) {
 }
 
 /// Force [N], and moment about `moment_point` [N m], with which an attachment balances the elastic forces of an
-/// implicit body at the nodes `held`. If the attachment holds the frame of the body, the moment on the frame is
-/// included.
+/// implicit body at the nodes `held`. If the attachment also holds the frame of the body, the moment includes the
+/// moment of all elastic forces on the frame.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -58,13 +58,13 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
-/// True for an implicit body. Its forces act for the length of the step; those of other bodies act for the kick
-/// (docs/methods/time_stepping.md 1.5).
+/// True for an implicit body. Forces act on it for the length of the step, and on other bodies for
+/// StepParameters::kick_time (docs/methods/time_stepping.md 1.5).
 bool is_implicit(const Model& model, std::size_t body) {
     return model.bodies.implicit[body].size() > 0;
 }
 
-/// True if the pair consists of two implicit bodies, or of an implicit body and a collider.
+/// True if all bodies of a pair are implicit. A collider as second partner does not matter.
 bool is_implicit(const Model& model, const PairKey& key) {
     return is_implicit(model, body_row(model, key.first)) &&
            (!key.bodies || is_implicit(model, body_row(model, key.second)));
@@ -92,8 +92,8 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
     take_over_rest(model, resting);
 }
 
-/// Initialises the forces on sleeping bodies. The sums of pairs and attachments start with the forces of the last step
-/// before the bodies fell asleep, as if these had acted for one second (still_seconds).
+/// Initialises the forces on sleeping bodies: those of the last step before the bodies fell asleep. They are stored as
+/// sums over a fictitious time of one second (still_seconds), so that each impulse equals its force.
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -112,9 +112,9 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// Computes the forces of attachments on sleeping bodies, and starts the sums of these attachments with the forces, as
-/// if these had acted for one second. The elastic forces and moments on held nodes follow from virtual work, which is
-/// the change of elastic energy when only these nodes move. `contact_force`: force on each node [N].
+/// Initialises the forces of attachments on sleeping bodies, also as sums over one second. An attachment balances all
+/// other forces on its nodes. The elastic part follows from virtual work: from the change of elastic energy when only
+/// these nodes move. `contact_force`: contact force on each node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
@@ -159,7 +159,8 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
     }
 }
 
-/// Does the work of take_over_reactions for an attachment that holds its nodes along single directions.
+/// Does the work of take_over_reactions for one attachment that holds its nodes along single directions. Only the parts
+/// of the forces along these directions count.
 void ForceLedger::take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     const Mat3& held = model.attachments.held[attachment];
@@ -201,8 +202,9 @@ Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
 }
 
 bool ForceLedger::shows_contacts() const {
-    // A step may leave gaps open that are a small part of the distance travelled in it. In a call much shorter than
-    // that step, bodies may not close these gaps, and contact forces would be missing.
+    // Least length of the call, as a fraction of the last step before it. A step may leave gaps that are a small
+    // fraction of the distance that bodies travel in it. In a much shorter call, bodies may not close these gaps, and
+    // contact forces would be missing.
     constexpr Real shortest_share = 0.01;
     return call_.whole_step > 0 && call_.whole_step >= shortest_share * step_before_;
 }
@@ -211,12 +213,12 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
     if (!(call_.whole_step > 0)) return false;
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
     if (rests(model, static_cast<Index>(body))) return true;
-    // The reaction on a rigid body is its change of momentum minus the impulses of weight and contacts, so contact
-    // forces must be measured.
+    // The reaction on a rigid body is computed as its change of momentum minus the impulses of weight and contacts. So
+    // contact forces must be measured too.
     const bool rigid = model.is_rigid(body), implicit = is_implicit(model, body);
     if (rigid && !shows_contacts()) return false;
     constexpr Real digits = 2 * std::numeric_limits<Real>::epsilon();
-    Real held = 0;   // mass of the held nodes [kg]
+    Real held = 0;   // mass of the nodes that the attachment holds [kg]
     Real noise = 0;  // rounding error of the momentum [N s]
     const auto add_position = [&](std::size_t n, Real mass) {
         if (!model.nodes.velocity[n].isZero(0))
@@ -233,8 +235,8 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
             if (rigid) add_position(n, model.weight_of_node(n));
             noise += model.weight_of_node(n) * digits * model.nodes.velocity[n].norm();
         }
-    // Accepted rounding error of a reaction: small_share times the force, plus the force that gives the held nodes this
-    // small_acceleration [m/s^2].
+    // Largest accepted rounding error of the reaction: small_share times the force, plus the force that gives the held
+    // nodes the acceleration small_acceleration [m/s^2].
     constexpr Real small_share = 0.01, small_acceleration = 1e-3;
     return noise <= small_share * impulse.norm() + small_acceleration * held * call_.whole_step;
 }
@@ -273,17 +275,17 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// True if a body was still at the beginning and at the end of the step. In the step that stops a body, contacts also
-/// take its momentum, so that their forces differ from those at rest. If a body falls asleep in that step, it is the
-/// only one whose forces are known.
+/// True if a body was still at the beginning and at the end of the step, so that the forces of the step are those at
+/// rest. In the step that stops a body, contacts also take its momentum. The forces of that step count nevertheless if
+/// the body falls asleep in it, because no others are known.
 bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
     const Real still = model.bodies.still_time[body];
     return still > step_.whole_step || (still > 0 && rests(model, static_cast<Index>(body)));
 }
 
 /// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
-/// them, adds the impulse of the mean force from the time in which both were still. If a body was awake, adds the step
-/// to this time, or restarts the time and its sums if a body has moved.
+/// them, the pair gets the impulse of its mean force over the time for which both were still before they fell asleep.
+/// If a body was awake, the step is added to this time. If a body has moved, the time and its sums restart instead.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -368,9 +370,9 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        // the momentum of a rigid body is no sum over its nodes, because the node masses do not give its inertia
+        // left out, because the node masses of a rigid body do not give its momentum
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
-        // nodes that are held along single directions keep their velocities in a drift
+        // left out, because a drift does not change the velocities of nodes that are held along single directions
         if (!holds_completely(model.attachments.held[a])) continue;
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);

@@ -18,8 +18,8 @@ struct Model;
 struct StepScratch;
 struct ForceReport;
 
-/// Key of a pair of contact partners. It names each partner by its slot, as handles do, so that the key stays valid
-/// when table rows move. Pairs with a collider are sorted first.
+/// Key of a pair of contact partners. It names each partner by the slot of its handle, so that the key stays valid when
+/// table rows move. Pairs with a collider are sorted first.
 struct PairKey {
     bool bodies = false;                  // true: the second partner is a body; false: it is a collider
     std::uint32_t first = 0, second = 0;  // slots
@@ -29,9 +29,9 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Values for an object or pair in one call of advance: the largest of the mean forces of its steps, the number of
-    /// contacts in its last step, and the largest number of contacts in a step. Also contains the sums over the present
-    /// step.
+    /// Values of an object or a pair in one call of advance: the largest of its mean forces in single steps, its number
+    /// of contacts in the last step, and its largest number of contacts in a step. Also contains the sums over the
+    /// present step.
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
@@ -42,16 +42,17 @@ public:
             impulse += more;
             step_contacts += of_contacts;
         }
-        /// Ends a step. `kick`: time for which forces act on velocities in the step [s].
+        /// Ends a step. `seconds`: time for which forces act on the object in the step [s].
         void end_step(Real seconds);
         void begin_call() { *this = {}; }
     };
     struct PairRow {
         PairKey key{};
-        ContactSums sums{};        // sums of contact impulses over the call of advance
-        ContactSums still{};       // sums of contact impulses over the time in which both objects were still
-        Real still_seconds = 0;    // time over which `still` is summed [s]
-        Index still_contacts = 0;  // number of contacts in the last step in which a body of the pair was awake
+        ContactSums sums{};      // sums of contact impulses over the call of advance
+        ContactSums still{};     // sums of contact impulses over the time in which both objects were still
+        Real still_seconds = 0;  // time over which `still` is summed [s]
+        // number of contacts in the last step at the start of which a body of the pair was awake
+        Index still_contacts = 0;
         Peak peak{};
         bool touched = false;  // true if the pair had contacts in the present step
     };
@@ -69,26 +70,28 @@ public:
     /// Time for which forces have acted between the objects of a pair in this call [s]. If all bodies of the pair are
     /// implicit, it is the sum of the step lengths. Otherwise it is the sum of their StepParameters::kick_time.
     Real seconds_of(const Model& model, const PairKey& key) const;
-    /// True if the call was long enough for contact forces to be measured. A step may leave gaps open that a much
-    /// shorter call does not close, so that these contacts would have no force.
+    /// True if the call was long enough for contact forces to be measured. The step before the call may have left small
+    /// gaps. A call much shorter than this step may not close them, so that contacts would have no force.
     bool shows_contacts() const;
-    /// True if the force of an attachment counts as measured. This needs small rounding errors of positions and
-    /// velocities and, on a rigid body, that shows_contacts() is true. On a sleeping body the force counts as measured
-    /// in every call with a step. `attachment`: row of AttachmentTable.
+    /// True if the force of an attachment counts as measured. The effect of rounding errors of positions and velocities
+    /// must be small, and on a rigid body shows_contacts() must be true. On a sleeping body the force counts as
+    /// measured in every call with at least one step. `attachment`: row of AttachmentTable. `impulse`: its impulse in
+    /// this call [N s].
     bool shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const;
 
-    /// Starts to measure forces. For sleeping bodies, the contact and attachment forces of the last step before they
-    /// fell asleep are used.
+    /// Starts to measure forces. Sleeping bodies get the contact and attachment forces of the last step before they
+    /// fell asleep.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
-    /// Must be called before the first step of a call, and again after a call that made no step. Stores the velocities
-    /// of held nodes. `step_before`: length of the step before the call; 0 if there was none [s].
+    /// Must be called before the first step of a call of advance, and again at the end of a call without a step. Sets
+    /// the sums to zero, and stores the velocities of held nodes. `step_before`: length of the last step before the
+    /// call; 0 if there was none [s].
     void begin_call(const Model& model, Real step_before, StepScratch& scratch);
     /// Must be called after a committed step. `rested`: for each body, nonzero if the body was asleep when the step
     /// began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
-    /// Must be called after a drift of leapfrog has moved positions ahead by `seconds` [s]. Held nodes must already
-    /// have their new velocities.
+    /// Adds the impulses by which attachments change the velocities of held nodes in a drift of leapfrog. Must be
+    /// called after the drift has moved positions by `seconds` [s].
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
     void forget_body(std::uint32_t slot);
     void forget_collider(std::uint32_t slot);
@@ -113,12 +116,12 @@ private:
 
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // [m]
-    // Duration of forces [s]: the whole step for implicit bodies, the kick for all other objects.
+    // Time for which forces act [s]: `whole_step` on implicit bodies, `kick` on all other objects.
     struct ForceTimes {
         Real whole_step = 0, kick = 0;
     };
     ForceTimes step_, call_;
-    Real step_before_ = 0;        // length of the step before the call; 0 if there was none [s]
+    Real step_before_ = 0;        // length of the last step before the call; 0 if there was none [s]
     std::vector<PairRow> pairs_;  // sorted by key
     // indexed by handle slot
     std::vector<Peak> bodies_, colliders_;

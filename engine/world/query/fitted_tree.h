@@ -1,4 +1,4 @@
-// Bounding volume hierarchies for queries.
+// Bounding volume hierarchies for ray casts and searches of nearest points.
 #pragma once
 
 #include "engine/world/world_state.h"

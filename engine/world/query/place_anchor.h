@@ -1,4 +1,5 @@
-// Anchors: conversion between a point in the world and a point that is fixed to an object.
+// Anchors (points fixed to an object, such as the ends of springs): conversion between the form that users give and the
+// form that tables store.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace skerry {
 
-/// An anchor in the form in which tables store it.
+/// An anchor in the form that tables store.
 struct PlacedAnchor {
     Index body = no_index, collider = no_index;  // rows of BodyTable and ColliderTable
     AnchorRow point;
@@ -19,17 +20,18 @@ struct PlacedAnchor {
     void store(AnchorColumns& columns, std::size_t row) const;
 };
 
-/// Fixes an anchor to its body or collider at the present time. Throws SceneError that names the field `field` of
-/// `object` if a handle is stale, the point is not finite, or the point is too far from a deformable body.
+/// Fixes an anchor to its body or collider at the present time. Throws SceneError if a handle is stale, the point is
+/// not finite, or the point is too far from a deformable body. `object` and `field`: names of the object and of its
+/// field, for the message.
 PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::string& object, const std::string& field);
 
-/// Names the object to which an anchor is fixed, for messages: "body 'NAME'", "collider 'NAME'" or "the world". `body`
-/// and `collider`: rows, or no_index.
+/// Returns the name of the object to which an anchor is fixed, for messages: "body 'NAME'", "collider 'NAME'" or "the
+/// world". `body` and `collider`: rows of BodyTable and ColliderTable, or no_index.
 std::string title_of_end(const Model& model, Index body, Index collider);
 std::string title_of_end(const Model& model, const Anchor& anchor);
 
-/// Data from which positions and velocities of anchors are computed between steps; valid until the world changes. The
-/// velocities of colliders are means over the last step, like those of nodes.
+/// Computes positions and velocities of anchors between steps. Valid until the world changes. The velocities of
+/// colliders are mean values over the last step, like the velocities of nodes.
 class AnchorsBetweenSteps {
 public:
     explicit AnchorsBetweenSteps(const WorldState& world);
@@ -39,7 +41,7 @@ public:
 
 private:
     const Model& model_;
-    Column<RigidMotion> motion_;  // motions of the colliders
+    Column<RigidMotion> motion_;  // motions of all colliders, by row of ColliderTable
 };
 
 }  // namespace skerry

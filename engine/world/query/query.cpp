@@ -52,9 +52,10 @@ SurfaceHit hit_of(const Model& model, const TrianglePoint& found, std::size_t bo
     return hit;
 }
 
-/// Returns the nearest hit on all surfaces that the filter admits. Of equally near hits the first one counts: on bodies
-/// before colliders, each in the order of their rows. of_tree() and of_shape() return the nearest hit on one object
-/// within a limit, which is `limit` at first and then the distance of the nearest hit so far.
+/// Returns the nearest hit on all surfaces that the filter admits. Of equally near hits the first one counts: bodies
+/// are searched before colliders, both in the order of their rows. `limit`: largest distance of a hit [m]; it decreases
+/// to the distance of the nearest hit so far. of_tree() and of_shape() return the nearest hit on a surface of triangles
+/// or on an analytic shape, within the present limit.
 std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter, Real limit, auto&& of_tree,
                                    auto&& of_shape) {
     world.settle();

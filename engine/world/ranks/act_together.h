@@ -1,4 +1,4 @@
-// Errors that only one rank has.
+// Errors that occur on only one of the ranks (processes that simulate one world together).
 #pragma once
 
 #include <cstdlib>
@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Calls act(), which all ranks do together. An error that only this rank has, for example because it runs out of
-/// memory, ends all ranks: the others would wait for this rank forever, and its state may be half changed. A SceneError
-/// occurs on all ranks alike and is passed on. `ranks`: null if this process is alone.
+/// Calls act(), a function that all ranks run together. If an error occurs on this rank only, for example for lack of
+/// memory, all ranks are ended: the others would wait for this rank forever, and its state may be half changed. A
+/// SceneError occurs on all ranks alike and is passed on. `ranks`: null if this process is alone.
 void act_together(Ranks* ranks, auto&& act) {
     if (ranks == nullptr) return act();
     try {

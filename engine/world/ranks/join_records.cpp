@@ -1,5 +1,5 @@
-// Collects the sums that each rank keeps for itself during steps, and adds them to the records of the run before a
-// check of the balance and at the end of a call of advance.
+// During steps, each rank keeps its own sums of energies, impulses and counts. The functions here add the sums of all
+// ranks to the records of the run: before a check of the energy balance, and at the end of a call of advance.
 #include <algorithm>
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 // Led ghosts: copies of a body for which only the rank that owns the body computes forces. The ranks with a copy
-// receive the predicted velocities of the body from that rank.
+// receive its predicted velocities (after forces, before contacts) from that rank.
 #include <algorithm>
 #include <cstddef>
 #include <span>

@@ -14,7 +14,8 @@ namespace skerry {
 /// element, contact and region counts once, although several ranks may hold it. Sums of energy are not included,
 /// because their last digits would depend on the order of the ranks.
 struct RankFindings {
-    // Fault of the body that comes first in the undivided world (StepVerdict). `fault_value`: size of the fault.
+    // Fault of the first faulty body, in the order of the undivided world (StepVerdict). `fault_value`: size of the
+    // fault.
     StepFault fault = StepFault::none;
     Index fault_body = nobody;
     Index fault_node = no_index;         // number of the node within the body
@@ -33,11 +34,11 @@ struct RankFindings {
     bool beyond_lists = false;  // CrossingTable::beyond_lists
     // The next members are used only with several ranks. The attempt is repeated for labels_open, bodies_missing and
     // ghosts_expired.
-    bool labels_open = false;     // the labels of regions had not settled in the last round
+    bool labels_open = false;     // labels of contact regions still changed in the last round (LabelRounds)
     int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
     bool pushed = false;          // RegionTable::pushed
     bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
-    bool ghosts_expired = false;  // a body may leave its box, or the last rank search was too many steps ago
+    bool ghosts_expired = false;  // holders of bodies must be found again (watch_ghosts)
     bool stop = false;            // a callback of World::advance has asked to end the call
     bool wakes = false;           // a body that several ranks hold wakes in this step
     bool may_rest = false;        // a body that several ranks hold may fall asleep after this step

@@ -33,7 +33,8 @@ struct RankShare {
     std::uint64_t tested = 0, hits = 0, let_through = 0;
 };
 
-/// Predicted velocities of bodies that have led ghosts.
+/// Predicted velocities (after forces, before contacts) of bodies with led ghosts: copies for which only the owner of
+/// the body computes forces.
 struct PredictionMail : RankMail {
     std::vector<MailReader> reader;  // by peer: reads `in`
 };
@@ -53,20 +54,21 @@ struct RankSleep {
     // bodies that this rank wakes and other ranks hold too: rows in the undivided world
     Column<Index> woken;
     Column<SetMember> members;  // entries for the sets that this rank has found
-    // A node of `joined` for each row of the undivided world, and for each set of the message that is being read;
-    // no_index: none yet.
+    // `node_of_body`: for each row of the undivided world, a node of `joined` that stands for the body. `node_of_set`:
+    // likewise for each set in the message that is being read. no_index: none yet.
     Column<Index> node_of_body, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
-    UnionFind joined;               // sets of touching bodies that the ranks found, joined where they share a body
+    UnionFind joined;               // union of the sets that all ranks have found; sets with a common body are joined
 };
 
-/// A body that a rank must hold to solve a region.
+/// A body that a rank must hold to solve a contact region.
 struct BodyRequest {
     int rank;
     Index world_row;  // row of the body in the undivided world
 };
 
-/// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).
+/// Rounds in which ranks exchange the labels of their contact regions. The label of a region tells which rank solves it
+/// (docs/methods/ranks.md 3).
 struct LabelRounds {
     static constexpr int least = 2;
     int count = least;   // number of rounds in each attempt at a step, equal on all ranks
@@ -125,7 +127,7 @@ struct RankState {
     PredictionMail predictions;
     RankSleep sleep;
     RankShare share;
-    // keys (DisabledPairTable) of pairs that released ties have enabled, as far as this rank knows
+    // keys (DisabledPairTable) of the pairs whose collisions were enabled because ties broke, as far as this rank knows
     Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt

@@ -48,7 +48,7 @@ struct NamedBodies {
         return (kind[body] == BodyKind::deformable && !asleep[body]) || max_speed[body] != 0;
     }
     /// True if the first node of the body may be too far from the origin (check_distance) after two steps of length `h`
-    /// [s]. The outer factor 2 is a safety margin. NaN counts as too far.
+    /// [s]. The outer factor 2 is a safety margin, also for the other nodes. NaN counts as too far.
     bool may_be_far(std::size_t body, Real h) const {
         if (nodes[body].size() == 0) return false;
         const Real distance = position[static_cast<std::size_t>(nodes[body].begin)].cwiseAbs().maxCoeff();
@@ -81,8 +81,8 @@ struct StageFindings {
     }
 };
 
-/// Counts the inverted tetrahedra of bodies that this rank owns, and names the first one. The owners of ghosts count
-/// theirs.
+/// Counts the inverted tetrahedra of bodies that this rank owns, and names the first one. Tetrahedra of ghosts (copies
+/// of other bodies) are counted by the ranks that own these bodies.
 void note_inversions(const NamedBodies& bodies, const StageFindings& found, RankFindings& own_findings) {
     own_findings.inverts_first = found.inversions.first;
     for (const InversionPart& part : found.inversion_parts) {
@@ -132,7 +132,7 @@ void take_findings(const RankFindings& all_findings, const StageFindings& found)
     if (all_findings.fault == StepFault::not_finite) found.verdict.fastest = {};
     found.strained.unsolved = or_none(all_findings.unsolved_body);
     // The findings must equal those of a process that simulates the whole world. That process tests for inversions and
-    // crossings only if no body has a fault, and for crossings only if no candidate list is too short.
+    // crossings only if no body has a fault, and for crossings only if no candidate list is too short (beyond_lists).
     const bool tested = all_findings.fault == StepFault::none;
     found.inversions = tested ? Inversions{all_findings.inversions, or_none(all_findings.inverted_body),
                                            all_findings.inverted_tetrahedron, all_findings.inverts_first}

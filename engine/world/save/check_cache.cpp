@@ -86,8 +86,8 @@ bool inside(Index row, Range range) {
     return row >= range.begin && row < range.end;
 }
 
-/// True if a candidate consists of a feature of body `a` and a part or a point of a collider. The keys of edge
-/// candidates are multiples of contacts_of_edge (edge_collider_feature).
+/// True if a candidate (two features that may touch) consists of a feature of body `a` and a part or a point of a
+/// collider. For an edge, the number of the second feature is a multiple of contacts_of_edge (edge_collider_feature).
 bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a, ColliderShape shape) {
     const Index parts = collider_part_count(shape), second = second_local(candidate.feature);
     if (is_edge_edge(candidate.feature))
@@ -99,8 +99,9 @@ bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a
     return inside(candidate.first, bodies.vertices[a]) && second < parts;
 }
 
-/// Throws SceneError unless the rows of LeafPairTable::listed are leaves in the tree of the body. The first row must be
-/// the root, which stands for all pairs of leaves that are not listed. Only self-contacts may have rows.
+/// Throws SceneError unless the rows of LeafPairTable::listed are pairs of leaves of the body's bounding-volume tree.
+/// The first row must be the pair of the root with itself, which stands for all pairs of leaves that are not listed.
+/// Only self-contacts may have rows.
 void check_leaf_pairs(const SavedFile& file, const Model& model, const PairTable& pairs, std::size_t p) {
     const Range tree = model.bodies.bvh_nodes[pairs.first[p]];
     const auto is_leaf = [&](Index row) {

@@ -18,7 +18,8 @@ namespace skerry {
 
 /// Checks sizes, links, ranges and handles of the model. Must be called before any data are derived from the tables.
 void check_model(const SavedFile& file, Model& model);
-/// Checks node masses, and the surfaces of rigid bodies without tetrahedra. Must be called after put_records.
+/// Checks node masses, and the surfaces of rigid bodies without tetrahedra. Must be called after put_records, which
+/// restores the meshes.
 void check_masses(const SavedFile& file, const Model& model);
 /// Checks the tables whose rows join bodies or act on them, such as joints. Bodies must have been checked.
 void check_joining_tables(const SavedFile& file, Model& model);

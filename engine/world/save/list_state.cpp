@@ -87,7 +87,7 @@ void list_watch(StepWatch& watch, Archive& archive) {
 
 void list_model(Model& model, SavedRows& saved, Archive& archive) {
     for (const AnyTable& table : model.tables()) {
-        // rest positions are not saved by node but once for each mesh (meshes/nodes), which several bodies may share
+        // rest positions are saved once for each mesh (meshes/nodes), because several bodies may share a mesh
         const void* const of_meshes = &model.nodes.rest_position;
         list_table(std::string(table.name()) + "/", table, archive, of_meshes);
     }

@@ -121,14 +121,15 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     check_model(file, model);
     put_records(saved, file, model);
     check_masses(file, model);
-    // If a material law has no rotated frame, a step writes neither rotation nor rotation_next, but swaps these two
-    // columns. Their values must therefore be equal.
+    // For a material law without a corotational frame, a step writes neither rotation nor rotation_next, but swaps
+    // these two columns. Their values must therefore be equal.
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
     find_holders(model);
-    // If the last force element was removed just before saving, the next step still counts the work of its last forces,
-    // and `forced` must stay true. note_forces keeps it true only if it was true before the call, so it is set here.
+    // Model::forced tells whether force elements (loads, springs and the like) act. If the last one was removed just
+    // before saving, `forced` must stay true in the next step, which counts the work of its last forces. note_forces
+    // keeps `forced` true only if it was true before the call, so it is set here.
     model.forced = true;
     note_forces(model);
     model.links_open = true;

@@ -88,8 +88,7 @@ std::string in_json(std::string_view text) {
     return result;
 }
 
-/// Reads a header from its start to its end. Accepts only the form in which saved_bytes() writes a header, which is
-/// narrower than JSON.
+/// Reads a header from its start to its end. Accepts only the subset of JSON in which saved_bytes() writes a header.
 class HeaderReader {
 public:
     HeaderReader(const std::string& file, std::string_view text) : file_(file), text_(text) {}
@@ -234,7 +233,7 @@ void renew_checksum(std::span<std::byte> file) {
 
 void require_file_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size) {
     const std::string_view text = text_in(start);
-    constexpr std::size_t most_before_title = 64;  // the title is at byte 0 in files of versions before 25
+    constexpr std::size_t most_before_title = 64;  // upper limit; files of versions before 25 begin with the title
     const std::size_t at = text.substr(0, most_before_title).find(file_title);
     if (at == std::string_view::npos) refuse_file(name, "a file of another kind", "check the path");
     int version = 0;

@@ -31,7 +31,8 @@ struct ArraySource {
     std::size_t stride;      // distance between two rows [bytes]
 };
 
-/// Returns the bytes of a saved world. Arrays of long numbers come first, so that all numbers are aligned.
+/// Returns the bytes of a saved world. Arrays whose numbers have the most bytes come first, so that all numbers are
+/// aligned.
 std::vector<std::byte> saved_bytes(std::vector<ArraySource> arrays, const SavedTexts& texts);
 
 /// Writes the checksum of the present bytes into the header of a saved world. Tests need it after they have changed

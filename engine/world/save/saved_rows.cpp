@@ -110,7 +110,7 @@ Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMe
     return mesh;
 }
 
-/// Checks that a saved mesh is valid, so that it could be added to a world.
+/// Checks that a saved mesh satisfies the rules for meshes that users add to a world.
 void check_mesh(const SavedMeshes& meshes, std::size_t m, const SavedFile& file) {
     const std::string path = "meshes/nodes";
     const MeshParts parts = parts_of(meshes, m);
@@ -139,8 +139,8 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const SavedFile& file)
     }
 }
 
-/// Checks the lists of tetrahedra that the elements of a body cover. `places`: number of lists, one for each lane of
-/// the element blocks of the body.
+/// Checks the lists of tetrahedra that the elements of a body cover. `places`: number of lists, one for each SIMD lane
+/// of the element blocks of the body.
 void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const SavedFile& file) {
     const std::span<const Index> offset = parts.covered_offset;
     if (offset.size() != places + 1)

@@ -1,5 +1,5 @@
-// Before the first step after objects were added, finds overlaps of these objects. Depending on the setting
-// start_overlaps, overlaps are resolved, refused or left unchanged.
+// Finds overlaps of objects that were added since the last step, before the next step. The setting start_overlaps
+// determines whether overlaps are resolved, refused or left unchanged.
 #include <algorithm>
 #include <map>
 
@@ -74,8 +74,8 @@ private:
         refuse_overlap(report_of(model_, found), others_, reason);
     }
 
-    /// Inverse mass of a body [1/kg], or 0 for a body that must not move. These are held bodies, bodies that an earlier
-    /// call of settle_start has checked, and mesh colliders.
+    /// Inverse mass of a body [1/kg]; 0 for a body that must not be moved. Three kinds of bodies must not be moved:
+    /// held bodies, bodies that an earlier call of settle_start has checked, and the bodies of mesh colliders.
     Real mobility(Index body) const {
         const auto b = static_cast<std::size_t>(body);
         const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.body_records[b].settled ||
@@ -84,8 +84,9 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    /// Largest depth of an overlap that can be resolved [m]: half the thickness of the thinner object. If two objects
-    /// overlap more deeply, the shorter way out may lead to the wrong side.
+    /// Largest depth of an overlap that can be resolved [m]: half the thickness of the thinner object, where the
+    /// thickness is the shortest edge of its bounding box. In a deeper overlap, the shortest way out may lead to the
+    /// wrong side.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();
         if (!pair.is_analytic && search_.has_inside(pair.second))
@@ -129,10 +130,11 @@ private:
         return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
     }
 
-    /// Adds the gap that an overlap requires to the list of its pair, in place of earlier gaps in nearly the same
-    /// direction. A pair has a list because a body in a corner of another object needs gaps in several directions.
+    /// Adds the gap that an overlap requires to the list of its pair. It replaces earlier gaps in nearly the same
+    /// direction. A body in a corner of another object needs gaps in several directions, so a pair may have several
+    /// gaps.
     void ask_for(const PairOverlap& found) {
-        // gaps replace each other if the cosine between their directions is above this
+        // a gap is replaced if the cosine of the angle between both directions is above this value
         constexpr Real about_the_same = 0.9;
         const Vec3& direction = found.overlap.direction;
         const Gap gap{direction, shift_along(found.pair, direction) + found.overlap.depth + search_.margin(found.pair)};
@@ -142,7 +144,7 @@ private:
     }
 
     /// Shifts one pair after the other, in repeated sweeps, until all pairs have their required gaps up to a tolerance.
-    /// The common centre of mass of a shifted pair does not move.
+    /// If both bodies of a pair can move, their common centre of mass stays in place.
     void satisfy() {
         constexpr int most_sweeps = 1000;
         constexpr Real slack = 0.1;  // tolerance of a gap, divided by the margin of the pair
@@ -165,7 +167,7 @@ private:
     StartSearch& search_;
     // sorted, because the result depends on the order in which pairs are shifted
     std::map<StartPair, std::vector<Gap>> gaps_;
-    std::size_t others_ = 0;  // number of overlaps in addition to the one that an error message describes
+    std::size_t others_ = 0;  // number of further overlaps that an error message mentions
 };
 
 std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model) {

@@ -8,7 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// Formats a vector. Components as small as the rounding errors of the largest component are written as 0.
+/// Returns a vector as text. Components that are not larger than the rounding error of the largest component are
+/// written as 0.
 std::string text(Vec3 value) {
     constexpr Real rounding = 1e-9;
     const Real largest = value.cwiseAbs().maxCoeff();

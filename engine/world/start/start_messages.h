@@ -1,4 +1,4 @@
-// The error that refuses an overlap at the start.
+// The error message for an overlap at the start that is refused.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Throws SceneError. The message names the partners of the overlap, the number of other overlaps, and
-/// `reason`, the reason why this overlap is not resolved.
+/// Throws SceneError. The message names the partners of the overlap, the number of other overlaps, and `reason`, the
+/// reason why this overlap is not resolved.
 [[noreturn]] void refuse_overlap(const StartOverlap& overlap, std::size_t other_count, const std::string& reason);
 
 }  // namespace skerry

@@ -14,8 +14,8 @@ namespace skerry {
 
 namespace {
 
-// Largest gap that is left between separated bodies, as a fraction of the mean edge length. It limits the gap if the
-// user has set a very large contact distance.
+// Upper limit of the gap that remains between separated bodies, as a fraction of the mean edge length. It matters only
+// if the user has set a very large contact distance.
 constexpr Real largest_margin = 0.02;
 
 // Rounding errors of positions, as a fraction of the mean edge length.
@@ -58,7 +58,7 @@ std::vector<StartPair> StartSearch::close_pairs(const std::vector<char>& marked)
     std::vector<Aabb> boxes;
     for (std::size_t b = 0; b < box_.size(); ++b) {
         const Aabb own = box(static_cast<Index>(b));
-        const Real wider = rounding_of_edges * model_.bodies.mean_edge[b];  // includes boxes that only touch
+        const Real wider = rounding_of_edges * model_.bodies.mean_edge[b];  // also finds boxes that only touch
         boxes.push_back({own.lower.array() - wider, own.upper.array() + wider});
     }
     const BoxTree tree(boxes);
@@ -100,7 +100,8 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::overlap_of(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
-    // An overlap below this fraction of the margin counts as touching, as in a step (contact_reach.h).
+    // A depth below this fraction of the margin counts as touching and not as an overlap, as in a step
+    // (contact_reach.h).
     if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
     if (pair.is_analytic || model_.bodies.kind[pair.second] != BodyKind::kinematic || has_inside(pair.second))
         return std::nullopt;
@@ -122,8 +123,8 @@ std::optional<Overlap> StartSearch::overlap_of_bodies(const StartPair& pair) {
         second->motion.position += shift(pair.second);
         return overlap_of_round(*first, second->geometry, second->motion, rounding(pair));
     }
-    // If only one of the two bodies has faces, the triangles that draw the round body are tested against these faces. A
-    // small overlap of the exact shapes may then be missed; the contacts of the steps resolve such an overlap.
+    // If only one of the two bodies is round, it is represented by the triangles that draw it, which only approximate
+    // its exact shape. A small overlap may then be missed. The contacts of the first steps resolve such an overlap.
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }

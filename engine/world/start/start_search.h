@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// A pair of objects to search for overlaps. The first object is a body. The second object is another body, the body of
-/// a mesh collider, or an analytic collider.
+/// A pair of objects that may overlap. The first object is a body. The second object is another body, the body of a
+/// mesh collider, or an analytic collider.
 struct StartPair {
     Index first;       // row of BodyTable; the kind of this body is `deformable`
     Index second;      // row of BodyTable; for an analytic collider, row of ColliderTable
@@ -30,15 +30,15 @@ struct PairOverlap {
 /// change.
 class StartSearch {
 public:
-    /// `now`: present time [s], at which scripts are evaluated to get the poses of colliders.
+    /// `now`: present time [s], at which the motion scripts of colliders give their poses.
     StartSearch(const Model& model, Real now);
 
-    /// Finds all overlapping pairs, sorted by table rows. Pairs of two objects that an earlier search has checked are
-    /// skipped.
+    /// Finds all overlapping pairs, sorted by table rows. A pair is skipped if earlier searches have checked both of
+    /// its objects.
     std::vector<PairOverlap> find_all();
-    /// Finds pairs of objects whose bounding boxes overlap. At least one object of a pair must be marked, and at least
-    /// one must not have been checked by an earlier search. `marked`: for each row of BodyTable, nonzero if the body is
-    /// marked.
+    /// Finds pairs of objects that may touch, because their bounding boxes overlap. At least one object of a pair must
+    /// be marked, and at least one must not have been checked by an earlier search. `marked`: for each row of
+    /// BodyTable, nonzero if the body is marked.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> overlap_of(const StartPair& pair);
 
@@ -48,10 +48,10 @@ public:
     /// Edge lengths of the bounding box of a body [m].
     Vec3 extent(Index body) const;
     /// Gap that remains between two objects after they are moved apart [m]: half the sum of their contact distances (0
-    /// for an analytic collider), but at most a fraction of the mean edge length.
+    /// for an analytic collider), but at most a small fraction of the shorter mean edge length.
     Real margin(const StartPair& pair) const;
-    /// True if a body has a closed surface or tetrahedra, and therefore a thickness. A body that overlaps it by more
-    /// than half of the thickness may be moved out on the wrong side.
+    /// True if a body has a closed surface or tetrahedra, and therefore a thickness. The thickness limits the depth of
+    /// overlaps that can be resolved (MoveApart::deepest in settle_start.cpp).
     bool has_inside(Index body) { return solid(body).closed; }
 
 private:
@@ -60,9 +60,9 @@ private:
     bool collides(const StartPair& pair) const;
     const Solid& solid(Index body);
     Real mean_edge(const StartPair& pair) const;
-    /// Depth below which rounding makes an overlap indistinguishable from contact [m].
+    /// Upper bound of the error of a depth by rounding [m]. A smaller depth may be mere contact.
     Real rounding(const StartPair& pair) const;
-    /// Returns the shape of a sphere or capsule at its shifted position, or nullopt for all other bodies.
+    /// Returns the shape of a spherical or capsule-shaped body at its shifted position; nullopt for all other bodies.
     std::optional<RoundSolid> round(Index body) const;
     std::optional<Overlap> overlap_of_bodies(const StartPair& pair);
     std::optional<Overlap> overlap_with_collider(const StartPair& pair);
@@ -72,7 +72,7 @@ private:
     std::vector<RigidMotion> collider_;  // poses of the colliders
     std::vector<Aabb> box_;              // bounding boxes of bodies before their shifts [m]
     std::vector<Vec3> shift_;
-    std::vector<std::unique_ptr<Solid>> solid_;  // surfaces by body; null until solid() builds them
+    std::vector<std::unique_ptr<Solid>> solid_;  // volume of each body; null until solid() builds it
 };
 
 }  // namespace skerry

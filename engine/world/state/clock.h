@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// A long step of the implicit bodies, during which all other bodies take several steps. Between calls of advance()
-/// there is no long step.
+/// A long step: the time that implicit bodies cover with one step of their deformation, while all other bodies take
+/// several steps. No long step outlasts a call of advance().
 struct LongStepClock {
     Real length = 0;     // length of the long step; 0: there is no long step [s]
     Real remaining = 0;  // time until the end of the long step [s]

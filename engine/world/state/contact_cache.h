@@ -1,5 +1,5 @@
-// Contact data that are used in more than one step: warm-start impulses, contacts of sleeping bodies, close pairs and
-// their contact candidates.
+// Contact data that are kept from step to step: warm-start impulses, contacts of sleeping bodies, pairs of close
+// objects and their contact candidates.
 #pragma once
 
 #include "components/contact_table.h"
@@ -16,12 +16,13 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Must be called for an object that was moved between steps. Its distances to other objects, and those between
-    /// parts of a moved body, count as unknown until the next step has searched its pairs. Other pairs are not searched
-    /// again. A moved body also loses its marks as unstrained and not inverted.
+    /// Must be called for an object that was moved between steps. The next step then searches all pairs of this object
+    /// again, because their stored distances are no longer valid. The next step also tests again whether a moved body
+    /// is strained, and whether its tetrahedra are inverted.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
-    /// Adds rows for new bodies and colliders, whose distances to other objects are still unknown.
+    /// Adds rows for new bodies and colliders. Their distances to other objects count as unknown until the next step
+    /// has searched their pairs.
     void extend(const Model& model);
 };
 

@@ -14,7 +14,8 @@ namespace skerry {
 
 struct RecoveryPlan;
 
-/// Elements of an implicit body, and the tetrahedra that they cover. No table of the world contains them.
+/// Elements of an implicit body, for stress and strain. Steps need no such elements, so no table of the world contains
+/// them.
 struct OwnElements {
     ElementBlockTable table;
     ElementNodeTable nodes;
@@ -23,8 +24,8 @@ struct OwnElements {
 };
 
 /// Cache of one body for data that depend only on its mesh, the materials of its tetrahedra, its element kind and
-/// BodyRecord::built. None of these changes during the life of a BodyRecord. Data are built when they are first needed.
-/// Several threads may request them at the same time. A copy of a cache is empty.
+/// BodyRecord::built. None of these changes during the life of a BodyRecord, so the cache never becomes invalid. Data
+/// are built at the first request. Several threads may request them at the same time. A copy of a cache is empty.
 class FieldCache {
 public:
     FieldCache();
@@ -35,8 +36,8 @@ public:
     ~FieldCache();
 
     std::shared_ptr<const OwnElements> elements(const std::function<OwnElements()>& build) const;
-    /// Plan by which stress and strain at some nodes of the body are computed. Plans for the 64 lists of nodes that
-    /// were used last are kept.
+    /// Plan by which stress and strain at the given nodes of the body are computed. `build`: called if the cache has no
+    /// plan for this list of nodes. The cache keeps the plans for the 64 lists that were requested last.
     std::shared_ptr<const RecoveryPlan> plan(std::span<const Index> nodes,
                                              const std::function<RecoveryPlan()>& build) const;
 

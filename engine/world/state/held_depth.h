@@ -1,4 +1,4 @@
-// Overlap of surfaces whose motion is prescribed.
+// Overlap of surfaces whose motion is prescribed, so that contacts cannot separate them.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Stored results for the explicit elements of a body. Later bodies with the same mesh and materials copy them, since
-// copying is faster than computing.
+// Stored properties of the explicit elements of a body. Later bodies with the same mesh and materials copy them, which
+// is faster than computing them again.
 #pragma once
 
 #include "components/column.h"
@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Order, mass shares and relaxation of the elements of a body, and the stable step of its mesh. These data depend only
-/// on mesh, materials and element kind. The entry is deleted when pending changes of the world are completed
-/// (WorldState::settle) or rows of bodies move.
+/// Order of the elements of a body in its blocks, their shares of the node masses, their relaxation, and the stable
+/// step of the mesh. These data depend only on mesh, materials and element kind. WorldState::settle deletes the entry,
+/// and so does any function that moves rows of bodies.
 struct KnownElements {
     Index body;           // row of a body with this mesh and these materials
     ElementKind element;  // element kind requested by the user

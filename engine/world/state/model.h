@@ -52,7 +52,8 @@ namespace skerry {
 
 struct BoundVisual;  // engine/mesh/visual/bound_visual.h
 
-/// Slot of rows for which users have no handle, such as the attachments that move mesh colliders.
+/// Entry of a column `slot` for a table row to which no user handle refers, such as the attachment that moves a mesh
+/// collider.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
 /// Mass properties of a body that its settings give: none, only the mass, or the mass, its centre and the inertia.
@@ -60,67 +61,71 @@ enum class GivenMass : std::uint8_t { none, mass, all };
 template <>
 inline constexpr std::uint64_t value_count<GivenMass> = 3;
 
-/// Data of a body that are not stored in tables. They serve users, files and the building of tables.
+/// Data of a body that are not stored in tables. They serve users and files, and table rows are built from them.
 struct BodyRecord {
     std::string name;
     ElementKind element;  // kind in use: for `smoothed`, either edge_smoothed or edge_node_smoothed
     ElementKind
-        requested_element;  // element kind requested by the user; used again when the dynamics of the body change
+        requested_element;  // kind requested by the user; used again when the user changes the dynamics of the body
     std::vector<std::array<Index, 4>> tetrahedra;  // corners: node numbers within the body
     std::vector<std::array<Index, 3>> surface;     // corners: node numbers within the body
-    // Material of each tetrahedron, as row of MaterialTable. If the column is empty, all tetrahedra have the material
-    // of the body.
+    // For each tetrahedron, the row of its material in MaterialTable. If the list is empty, all tetrahedra have the
+    // material of the body.
     std::vector<Index> tetrahedron_material;
     std::vector<int> label{};               // Mesh::label
     std::map<std::string, MeshSet> sets{};  // sets by name; nodes and tetrahedra numbered within the body
     // Surface that is drawn in place of the body; nullptr if there is none. Bodies with the same mesh may share it.
     std::shared_ptr<const BoundVisual> visual{};
-    // Tetrahedra covered by each element, in the order of the lanes in the element blocks of the body. An unused lane
-    // has no tetrahedra.
+    // Tetrahedra that each element covers. The elements of a body fill blocks of element_lanes lanes; the list has one
+    // entry for each lane, in this order. The entry of an unused lane is empty.
     Ragged<Index> element_tetrahedra;
-    bool settled = false;                             // true if the body was checked for overlaps
+    bool settled = false;                             // true if settle_start has checked the body for overlaps
     RigidPose start{Vec3::Zero(), Mat3::Identity()};  // pose at which the body was added
-    // Rotation of the body when its elements were built: when it was added, or when its dynamics last changed. At rest
-    // the elements have this rotation.
+    // Rotation of the elements at rest. It is the rotation that the body had when its elements were built: when the
+    // body was added, or when its dynamics last changed.
     Mat3 built = Mat3::Identity();
     // For a rigid body that is frozen in a deformed shape: node positions of the mesh, in the frame of the mesh [m].
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
     std::vector<Vec3> mesh_shape{};
     GivenMass given_mass = GivenMass::none;
-    DynamicsEstimate choice{};  // estimate that decided the choice, for a body added as `automatic`
+    // for a body added with the dynamics `automatic`: the estimate by which the engine chose
+    DynamicsEstimate choice{};
     FieldCache fields{};
 };
 
 struct ColliderRecord {
     std::string name;
     Shape shape;
-    bool settled = false;  // true if the collider was checked for overlaps
+    bool settled = false;  // true if settle_start has checked the collider for overlaps
 };
 
-/// Handles of objects, with the names that were given to objects. Names serve users and files, and affect no step.
+/// Handles of objects, with the names that users have given to some of them. No step depends on a name.
 template <class HandleType>
 struct NamedHandles : HandleMap<HandleType> {
     std::map<HandleType, std::string> names;
 };
 
-/// Properties of the bodies of all ranks on which the length of a step depends, as of the last reduction
-/// (reduce_limits). Without ranks the initial values remain, which limit nothing.
+/// Properties, over all ranks (processes of a divided world), on which the length of a step depends. reduce_limits
+/// computes them. Without ranks the initial values remain, which limit nothing. A row in the undivided world is the row
+/// of BodyTable that a body would have if one process simulated all bodies.
 struct LimitsOfRanks {
-    Real stable_step = infinity;   // shortest stable step [s]
-    Index stiffest = no_index;     // row in the undivided world of the body with this stable step
-    bool strained = false;         // true if strain has shortened this stable step (is_strained)
-    Real rest_step = infinity;     // shortest stable step at rest of a body with elements [s]
-    Real spin = 0;                 // greatest angular speed of a rigid or implicit body with a joint or tie [rad/s]
-    Index spinning = no_index;     // row in the undivided world of the body with this speed
-    bool has_frames = false;       // true if some body is rigid or implicit
-    bool has_implicit = false;     // true if some body is implicit
-    bool has_clusters = false;     // true if some body has clusters
-    bool forced = false;           // true if Model::forced is true on some rank
-    bool follow_implicit = false;  // true if forces that depend on motion act on implicit bodies
-    bool clusters_grew = false;    // true if Model::clusters_grew is true on some rank
-    std::uint64_t element_blocks = 0, cluster_entries = 0;  // element blocks and entries of cluster matrices, all ranks
-    // true if stable steps depend on positions, or if joints or ties limit the rotation in a step: each step then needs
-    // a reduction
+    Real stable_step = infinity;  // shortest stable step [s]
+    Index stiffest = no_index;    // row in the undivided world of the body with this stable step
+    bool strained = false;        // true if strain, and not the rest shape, makes this stable step short (is_strained)
+    Real rest_step = infinity;    // shortest stable step at rest of a body with elements [s]
+    Real spin = 0;                // greatest angular speed of a rigid or implicit body with a joint or tie [rad/s]
+    Index spinning = no_index;    // row in the undivided world of the body with this speed
+    bool has_frames = false;      // true if some body is rigid or implicit
+    bool has_implicit = false;    // true if some body is implicit
+    bool has_clusters = false;    // true if some body has clusters
+    bool forced = false;          // true if Model::forced is true on some rank
+    // true if forces that depend on motion act on implicit bodies, which then take no long steps
+    bool follow_implicit = false;
+    bool clusters_grew = false;  // true if Model::clusters_grew is true on some rank
+    // numbers of element blocks and of entries of cluster matrices
+    std::uint64_t element_blocks = 0, cluster_entries = 0;
+    // True if stable steps depend on positions, or if joints or ties limit the rotation in a step. reduce_limits must
+    // then be called before each step.
     bool moves = false;
 };
 
@@ -134,13 +139,14 @@ struct Model {
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
-    ElementPatches patches;  // derived: extend_derived
-    // Clusters of the implicit elements. They cannot be derived from other data, because their matrices are updated
-    // when elements stiffen.
+    ElementPatches patches;  // computed by extend_derived
+    // Groups of nodes that implicit elements couple. They are saved with a world and not derived again, because their
+    // matrices depend on the steps in which elements have stiffened.
     NodeClusters clusters;
     RigidBodyTable rigid_bodies;
     ImplicitNodeTable implicit_nodes;
-    // matrices of implicit bodies, by row of rigid_bodies; computed by derive_all and stiffen
+    // Matrices of implicit bodies; entry r belongs to the body in row r of rigid_bodies. Computed by derive_all and
+    // stiffen.
     StiffBodies stiff_bodies;
     SurfaceTables surface;
     BvhTable bvh;
@@ -160,7 +166,7 @@ struct Model {
     DisabledPairTable disabled_pairs;
     MaterialPairTable material_pairs;
     SurfaceSetTable surface_sets;
-    SetOfFeature set_of_feature;  // derived from surface_sets: note_changed_seams
+    SetOfFeature set_of_feature;  // derived from surface_sets by note_changed_seams
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
@@ -177,33 +183,38 @@ struct Model {
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
-    std::vector<KnownElements> known_elements;     // results for meshes that were added since the last call of settle()
+    std::vector<KnownElements> known_elements;     // elements of meshes that were added since the last call of settle()
 
     Column<Real> body_mass;  // mass of all nodes of each body, including held nodes [kg]; computed by extend_derived
-    // True if the implicit elements must be chosen again, because bodies, materials or attachments have changed.
+    // True if settle_clusters must choose the implicit elements again, because bodies, materials or attachments have
+    // changed.
     bool clusters_open = true;
     bool clusters_grew = false;  // true if elements became implicit at the last evaluation of stable steps
     bool settled = true;         // true if all bodies and colliders were checked for overlaps
     Index loaded_bodies = 0;     // number of bodies with loads; computed by derive_all and note_loads
-    bool forced = false;         // true if any force element (loads included) is present; computed by note_forces
-    // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
-    // is empty, all sums are zero. Computed by note_forces.
+    // true if any load or other force element (seams.h) is present; computed by note_forces
+    bool forced = false;
+    // For each body: upper bound by which all force elements together raise its squared natural frequencies
+    // (ForceElement::add_rate) [1/s^2]. If the column is empty, all bounds are zero. Computed by note_forces.
     Column<Real> force_rate;
-    // Working memory of add_cavity_rate. For each node of a body, sums over its faces: a third of the area vector
-    // [m^2], and the longest edge [m].
+    // Working memory of add_cavity_rate, for each node of one body. `face_areas`: sum over the faces at the node of a
+    // third of the area vector [m^2]. `face_edges`: sum over the same faces of the longest edge [m].
     Column<Vec3> face_areas;
     Column<Real> face_edges;
     // True if `force_rate` depends on positions, so that it must be computed again before each step. Computed by
     // note_forces.
     bool force_rate_moves = false;
-    // For each body: rates that ForceElement::bound_damping and add_drag find [1/s]. If a column is empty, all its
-    // values are zero. Computed by note_forces.
+    // For each body, over all force elements: the largest damping rate (ForceElement::bound_damping), and the sum of
+    // the drag rates (ForceElement::add_drag) [1/s]. If a column is empty, all its values are zero. Computed by
+    // note_forces.
     Column<Real> force_damping, force_drag;
-    BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
-    bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
-    // True if any body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
+    BodyLinks links;  // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
+    // true if joints (or other rows that join bodies) have changed since `links` was computed
+    bool links_open = false;
+    // True if any body is asleep. If it is false, stages do not test each body for sleep. Computed by note_rest.
     bool any_asleep = false;
-    bool any_idle = false;  // true if a body is idle in this step (BodyTable::idle)
+    // true if a body is asleep or a led ghost (BodyTable::idle), so that steps compute no forces on it
+    bool any_idle = false;
 
     /// Sets the number of this world, which is a part of all handles of its objects.
     void set_world(std::uint32_t number);
@@ -224,8 +235,8 @@ struct Model {
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
-    /// The elements that steps compute: those of bodies that are neither asleep, nor led ghosts, nor marked as
-    /// unstrained.
+    /// The elements whose forces a step computes. It leaves out bodies that are asleep, led ghosts (copies of bodies of
+    /// other ranks, GhostKind::led) or marked as unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
     /// Returns the number of a tetrahedron in the mesh given by the user. `lane`: row of the block of the tetrahedron
@@ -238,8 +249,8 @@ struct Model {
     /// Must be called before a step: sets any_asleep, any_idle and BodyTable::idle. Returns the mass of all awake
     /// bodies that are not ghosts [kg].
     Real note_rest();
-    /// Must be called after the loads of a body were set. Updates loaded_bodies. `before`: true if the body already had
-    /// loads.
+    /// Must be called after the nodal loads of a body were set. Updates loaded_bodies. `before`: true if the body had
+    /// loads before they were set.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
     /// Shape and pose of a round body (a rigid sphere, capsule or cylinder), in the form in which colliders have them.
@@ -266,20 +277,21 @@ struct Model {
     bool is_held(std::size_t body) const {
         return has_frame(body) && rigid_bodies.holder[static_cast<std::size_t>(bodies.rigid[body].begin)] != no_index;
     }
-    /// True for a rigid body whose nodes share its mass so that sums over node masses give its mass and centre of mass:
-    /// a body without tetrahedra, or with given mass properties. Single nodes may then have masses <= 0.
+    /// True for a rigid body without tetrahedra, or with given mass properties. The mass of such a body is divided
+    /// among its nodes so that sums over the nodes give its mass and centre of mass. Single nodes may then have masses
+    /// <= 0.
     bool shares_mass(std::size_t body) const;
-    /// Mass of a node [kg]. If the nodes share the mass of a rigid body (shares_mass), the mass of the body divided by
-    /// its number of nodes, because NodeTable::mass may then be <= 0.
+    /// Mass of a node [kg]. For a body with shares_mass, whose NodeTable::mass may be <= 0, it is the mass of the body
+    /// divided by its number of nodes.
     Real weight_of_node(std::size_t node) const;
-    /// Inverse mass of a node that no attachment holds: the inverse of weight_of_node, or 0 if that mass is 0, as for a
-    /// node of no tetrahedron [1/kg].
+    /// Inverse mass that a node has while no attachment holds it: the inverse of weight_of_node [1/kg]. It is 0 if that
+    /// mass is 0, as for a node that belongs to no tetrahedron.
     Real free_inverse_mass(std::size_t node) const;
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }
-    /// Builds the elements of an implicit body, because no table contains them. Their node numbers are local to the
-    /// body.
+    /// Builds the elements of an implicit body. No table contains them, because steps use the matrices in stiff_bodies
+    /// instead. Their node numbers are local to the body.
     ElementList elements_of_implicit(std::size_t body) const;
     /// Computes the matrices of an implicit body (its entry in stiff_bodies) from its record, masses and materials.
     void stiffen(std::size_t body);
@@ -288,7 +300,8 @@ struct Model {
     /// Computes the derived columns of all rows and counts the bodies with loads. Sets velocity_next and push_out of
     /// all nodes to zero.
     void derive_all();
-    /// Builds the clusters of all bodies, or of marked bodies, again after elements became implicit or explicit.
+    /// Builds the clusters again after elements became implicit or explicit: those of all bodies, or of the bodies with
+    /// a nonzero entry of `body_changed`.
     void rebuild_clusters();
     void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
@@ -299,21 +312,21 @@ struct Model {
         if (const std::vector<Vec3>& kept = body_records[body].mesh_shape; !kept.empty()) return kept;
         return rows_of(nodes.rest_position, bodies.nodes[body]);
     }
-    /// Searches the last few bodies before row `end` for a body that has the given mesh and is not round. Returns the
-    /// last such body, or no_index.
+    /// Searches the last few bodies before row `end` for a body that has exactly the given mesh and is not round.
+    /// Returns the last such body, or no_index. Data of this body can then be copied.
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
 
-    /// Builds the surface and the bounding volume hierarchy of one body from its record and its rest shape. The body
-    /// must be the last one in these tables. If one of the last bodies before it has the same mesh, the data of that
-    /// body are copied.
+    /// Appends the surface and the bounding volume hierarchy of one body, built from its record and its rest shape. No
+    /// later body may have rows in these tables. If one of the last bodies before it has the same mesh, the data of
+    /// that body are copied.
     void append_outline(std::size_t body);
-    /// Copies surface and hierarchy from one of the last bodies with the same mesh. If there is no such body, returns
-    /// false and does nothing.
+    /// Appends a copy of the surface and hierarchy of an earlier body with the same mesh (body_of_mesh). If there is no
+    /// such body, returns false and does nothing.
     bool append_outline_again(std::size_t body);
-    /// For each face, given by its node numbers within the body in any order: the row of TriangleTable, or no_index if
-    /// the surface of the body has no such face.
+    /// Returns for each face its row of TriangleTable, or no_index if the surface of the body has no such face.
+    /// `faces`: numbers of the three nodes within the body, in any order.
     std::vector<Index> triangles_of(std::size_t body, std::span<const std::array<Index, 3>> faces) const;
-    /// Computes set_of_feature. Where sets overlap, the last one counts.
+    /// Computes set_of_feature. A feature of several surface sets is assigned to the last of them.
     void index_surface_sets();
     /// Rebuilds the surfaces and bounding volume hierarchies of all bodies.
     void rebuild_outlines();
@@ -347,9 +360,9 @@ struct Model {
         visit("material_pairs", material_pairs);
         visit("surface_sets", surface_sets);
     }
-    /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns that
-    /// contain the joined bodies. Generic code can therefore save, check, hash and renumber these tables, and erase
-    /// their rows with a body.
+    /// Visits the tables whose rows refer to bodies, each with its handles. Their columns with the role `body` contain
+    /// rows of BodyTable. Generic code can therefore save, check, hash and renumber these tables, and erase the rows of
+    /// a removed body.
     void for_each_joining(auto&& visit) {
         visit("joints", joints, joint_map);
         visit("surface_sets", surface_sets, surface_set_map);

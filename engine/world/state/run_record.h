@@ -15,7 +15,8 @@
 
 namespace skerry {
 
-/// Subscription of a user to the contact problems of steps. Without a subscriber, the only cost is a skipped stage.
+/// Subscription of a user to the contact problems of steps. Without a subscriber, the stage that copies the data of the
+/// problem is skipped.
 struct ProblemWatch {
     std::function<void(const StepProblem&)> take;
     std::uint64_t every = 1;
@@ -37,10 +38,12 @@ struct RunRecord {
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // the contacts that World::contacts() returns
-    // by entry of contact_view: row of StepScratch::contacts; of sleeping bodies: ~row of ContactCache::resting
+    // For each entry of contact_view, its row r in StepScratch::contacts. A contact between sleeping bodies has the
+    // entry ~r instead, with its row r in ContactCache::resting.
     Column<Index> contact_rows;
     bool contact_view_is_current = false;
-    // true if the last check of the balance followed a skipped step, and nothing has moved since
+    // True if the balance was last checked after a skipped step, and nothing has moved since. Further checks are then
+    // skipped.
     bool balance_of_rest = false;
 };
 

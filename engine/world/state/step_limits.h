@@ -9,12 +9,13 @@
 
 namespace skerry {
 
-/// Counts steps and discarded attempts for each pair of cause and body. Counting for a known pair allocates no memory.
+/// Counts steps and discarded attempts for each pair of a cause and a body. Memory is allocated only when a pair occurs
+/// for the first time.
 class StepLimits {
 public:
     /// Counts a committed step of length `h` [s] that the given cause has limited.
     void count_step(StepLimit limit, BodyHandle body, const std::string& name, Real h);
-    /// Counts an attempt at a step that was given up for the given cause.
+    /// Counts an attempt at a step that was discarded for the given cause.
     void count_try(StepLimit limit, BodyHandle body, const std::string& name);
     /// Returns all entries, in descending order of their numbers of steps.
     std::vector<StepLimitReport> report() const;

@@ -34,7 +34,7 @@ StepParameters step_parameters(const Settings& settings, const Tuning& tuning) {
     step.collision.continuous = settings.continuous_collision;
     step.solver = solver_settings(settings, tuning);
     // Solver tolerance for regions whose bodies are all still. It is so small that errors of the impulses do not keep a
-    // pile of bodies awake. In a pile at rest the warm start is accurate to this tolerance without sweeps.
+    // pile of bodies awake. It costs little: in a pile at rest, the impulses of the last step already meet it.
     constexpr Real still_tolerance = 1e-5;
     if (step.sleep.own_limits) step.solver.still_tolerance = still_tolerance;
     return step;

@@ -1,4 +1,4 @@
-// Assignment of surface features to surface sets (components/surface_rules.h).
+// Assignment of surface features (triangles, edges and vertices) to surface sets (components/surface_rules.h).
 #include <algorithm>
 
 #include "engine/mesh/sets.h"
@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Writes the row of one surface set into SetOfFeature, for all triangles, edges and vertices that belong to the set.
+/// Writes the row of one surface set into SetOfFeature, for all features that belong to the set.
 class SetIndex {
 public:
     SetIndex(const Model& model, std::size_t set, SetOfFeature& of)
@@ -56,7 +56,8 @@ private:
     Index set_;
     SetOfFeature& of_;
     std::size_t body_;
-    // by local node: `listed_`: the set lists the node itself; `in_set_`: the node belongs to the set
+    // Entries by node number within the body. `listed_`: the set lists the node itself. `in_set_`: the set lists the
+    // node, or it is a corner of a triangle in the set.
     std::vector<bool> listed_, in_set_;
 };
 

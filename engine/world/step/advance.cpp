@@ -18,8 +18,8 @@ namespace skerry {
 namespace {
 
 /// Number of steps in a round. In each round the stable step of every body is evaluated once, because it changes when
-/// the body deforms. The stable step in use is never older than two rounds. With clusters the rounds are shorter,
-/// because steps are several times longer and explicit elements deform more in each step.
+/// the body deforms. The stable step in use is never older than two rounds. With clusters, steps are several times
+/// longer, and elements deform more in each step. The rounds then have fewer steps.
 std::uint64_t steps_per_round(const WorldState& world) {
     return world.model.clusters.empty() && !world.model.of_ranks.has_clusters ? 128u : 64u;
 }
@@ -40,8 +40,8 @@ bool keep_watch(WorldState& world) {
     return !watch.second;
 }
 
-/// Limits of the first attempt at a step in a call of advance. They follow from the velocities at the start of the
-/// call.
+/// Limits of the first attempt at a step in a call of advance. They follow from the speed of deformation at the start
+/// of the call.
 AttemptLimits limits_of_first_attempt(WorldState& world) {
     const Model& model = world.model;
     const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
@@ -132,7 +132,8 @@ void note_inversions(WorldState& world, StepReport& report) {
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
 }
 
-/// If a body is unstable at Settings::step_size, counts the step and names the body in the report.
+/// If a body would be unstable at Settings::step_size, so that the step was shorter, counts the step and names the body
+/// in the report.
 void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
@@ -154,7 +155,8 @@ void note_committed_step(WorldState& world, StepReport& report) {
     note_limit(world, report);
 }
 
-/// Completes a committed step. `let_through`: number of crossings that were accepted before the step.
+/// Completes a committed step: updates drawn nodes, releases broken ties and adds the step to the report.
+/// `let_through`: number of crossings that were accepted in all earlier steps.
 void complete_step(WorldState& world, std::uint64_t let_through, StepReport& report) {
     world.drawn_behind = world.scratch.parameters.draws_late;
     if (world.scratch.findings.rest.bodies > 0) world.draw(true);
@@ -163,8 +165,8 @@ void complete_step(WorldState& world, std::uint64_t let_through, StepReport& rep
     note_committed_step(world, report);
 }
 
-/// Checks the world at the end of every second round of steps. Returns false if the balance of energy must be checked
-/// later, because positions are ahead of velocities (leapfrog).
+/// Checks surfaces for self-crossings, and the energy balance. Must be called after every second round of steps.
+/// Returns false if the balance must be checked later, because positions are ahead of velocities (leapfrog).
 bool check_after_rounds(WorldState& world) {
     world.draw();
     if (!world.scratch.skipped)
@@ -175,8 +177,8 @@ bool check_after_rounds(WorldState& world) {
     return true;
 }
 
-/// Returns true, and sets the verdict, if the next step would be too short to advance the time. `end`: time at the end
-/// of the call [s].
+/// Returns true, and sets the verdict, if the next step would be so short that adding it to the time could change
+/// nothing (rounding). `end`: time at the end of the call [s].
 bool is_too_stiff(WorldState& world, const AttemptLimits& attempt, Real end) {
     Index stiffest = no_index;
     const Real trusted = trusted_step(world.model, &stiffest);
@@ -194,10 +196,11 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.world_row_of(row);
 }
 
-/// Fetches bodies from other ranks if the last attempt lacked bodies or new holders must be found. Otherwise does
-/// nothing and returns false. After a fetch the next attempt must compute the forces anew (h = 0 marks them as
-/// unknown), because new ghosts have no forces. The assumed stiffness of clusters is restored, so that the next attempt
-/// stiffens the same clusters again and its forces contain the impulses of this stiffening.
+/// Fetches copies of bodies (ghosts) from other ranks, if this is necessary after the last attempt: a rank lacked
+/// bodies, or bodies may have moved to where other ranks need them. Otherwise does nothing and returns false. The next
+/// attempt computes all forces anew, because new ghosts have none; h = 0 marks the forces as unknown. The assumed
+/// stiffness of clusters is therefore restored too: the next attempt stiffens the same clusters again, which adds
+/// impulses to the forces.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all_findings.bodies_missing && !world.ranks.all_findings.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
@@ -206,8 +209,8 @@ bool fetch_ghosts(WorldState& world) {
     return true;
 }
 
-/// Throws SceneError if a call would need too many steps. Steps are counted with an int. Without this check, a call
-/// whose steps are too small to advance time would never end.
+/// Throws SceneError if a call would need more steps than an int can count. Such steps may also be too short to advance
+/// the time, so that the call would never end.
 void require_countable(const WorldState& world, Real dt) {
     const Model& model = world.model;
     constexpr Real most = std::numeric_limits<int>::max();
@@ -224,7 +227,8 @@ void require_countable(const WorldState& world, Real dt) {
            of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size");
 }
 
-/// Calls functions of the user, and keeps an exception of such a function until the end of advance().
+/// Calls functions of the user, and stores an exception that one of them throws until the end of advance(). The world
+/// is then in a valid state.
 class Callbacks {
 public:
     /// Returns the result of call(); false if it throws.
@@ -244,7 +248,8 @@ private:
     std::exception_ptr thrown_;
 };
 
-/// Marks the world as advancing during the lifetime of this object, also when an exception is thrown.
+/// Sets WorldState::advancing during the lifetime of this object. The destructor clears it even if an exception is
+/// thrown.
 class AdvanceScope {
 public:
     explicit AdvanceScope(bool& advancing) : advancing_(advancing) { advancing_ = true; }
@@ -256,7 +261,7 @@ private:
     bool& advancing_;
 };
 
-/// Advances a world in which settle_start() has treated overlaps (World::advance).
+/// Does the work of World::advance, after settle_start() has treated overlaps.
 StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const StepReport&)>& go_on,
                       Callbacks& callbacks) {
     Model& model = world.model;
@@ -272,21 +277,23 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     const Real end = clock.time + dt;
     Real remaining = dt;
     AttemptLimits attempt = limits_of_first_attempt(world);
-    // Stored crossings belong to a step that the last call of advance abandoned. Bodies may have changed since then.
+    // Crossings that are still stored belong to a step that the last call of advance gave up. Bodies may have changed
+    // since then.
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && remaining > 0)
         check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
-    // if there are force elements, they read all nodes in every step, so nodes that only draw round bodies must be up
-    // to date
+    // Nodes that are only drawn (those of round bodies) can be updated late, unless there are force elements: these
+    // read all nodes in every step.
     world.scratch.parameters.draws_late = !model.forced;
-    // Energy that clusters have gained since the last committed step [J]. `stiffened_before`: this energy before the
-    // attempt that computed the present forces; `stiffened` is reset to it if these forces are discarded.
+    // `stiffened`: energy that clusters have gained by stiffening since the last committed step [J].
+    // `stiffened_before`: its value before the attempt that computed the present forces. If these forces are discarded,
+    // `stiffened` returns to this value.
     Real stiffened = 0, stiffened_before = 0;
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
     bool check_at_end = false;
-    // With ranks, each rank sums the share of its own bodies, and join_records adds all shares.
+    // With ranks, each rank sums the values of its own bodies, and join_records adds the sums of all ranks.
     Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
     stops = world.ranks.all_findings.stop = false;
@@ -301,8 +308,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     };
     while (remaining > 0) {
         if (go_on && !stops && !callbacks.run([&] { return go_on(std::as_const(report)); })) stops = true;
-        // The stages of each step tell all ranks whether one of them stops (all.stop), so all ranks end the call after
-        // the same step.
+        // With ranks, the stages of each step tell all ranks whether a callback of any rank has asked to stop
+        // (all_findings.stop). So all ranks end the call after the same step.
         if (world.ranks.on() ? world.ranks.all_findings.stop : stops) {
             report.status = StepStatus::stopped;
             break;
@@ -313,7 +320,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
             blame(world, report);
             break;
         }
-        // Attempts with longer lists or with crossings must keep the step length for which the lists or crossings were
+        // A repeated attempt with longer contact lists or with crossings must keep the step length for which these were
         // found.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
         const Real within = time_to_end_of_long_step(model, remaining, clock.long_step);
@@ -326,7 +333,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, attempt);
         if (!world.scratch.parameters.forces_known) stiffened_before = stiffened;
-        // counts even if the attempt is not committed, because the cluster matrices are then not restored
+        // added even if the attempt is not committed, because cluster matrices keep their update
         stiffened += world.scratch.findings.stiffened;
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::again_over_ranks && fetch_ghosts(world)) stiffened = stiffened_before;
@@ -348,7 +355,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         stops |= !heard;
         if (!heard && !world.ranks.on()) break;
     }
-    // A rank may have asked to stop in the last step. The loop then ends before its check of all.stop.
+    // If a rank has asked to stop in the last step of the call, the loop has ended before its check of
+    // all_findings.stop.
     if (!(remaining > 0) && world.ranks.all_findings.stop) report.status = StepStatus::stopped;
     clock.long_step = {};                // no long step continues in the next call
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
@@ -360,8 +368,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         drift(0);
         world.query_trees.forget();  // a query during the steps may have fitted the trees to other positions
         note_held(held_in_surfaces(world), world, report);
-        // Updates stiffened clusters now. Otherwise the first step of the next call would count the energy of this
-        // update, which belongs to the present call.
+        // Updates stiffened clusters now, because the energy of this update belongs to the present call. Otherwise the
+        // first step of the next call would count it.
         stiffened += follow_stiffening(model);
         balance.work += stiffened;
     }
@@ -376,11 +384,11 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
 }  // namespace
 
 Real lag_between_steps(const WorldState& world) {
-    // With leapfrog, a drift at the end of the call removes the lag of the velocities.
+    // With leapfrog, the drift at the end of a call brings positions and velocities to the same time.
     if (world.model.settings.integrator == Integrator::leapfrog) return 0;
     const Real before = world.clock.step_before;
     const Real step = before > 0 ? before : trusted_step(world.model);
-    return std::isfinite(step) ? step / 2 : 0;  // a world without bodies does not limit the step, and has no velocities
+    return std::isfinite(step) ? step / 2 : 0;  // infinite in a world without bodies, where the lag has no meaning
 }
 
 StepReport World::advance(Real dt) {
@@ -391,8 +399,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     WorldState& world = *state_;
     world.require_between_steps("advance");
     if (!(dt >= 0) || !std::isfinite(dt)) refuse("advance", "dt", short_text(dt), "a time >= 0 (s)");
-    // Sets the floating-point mode for the code that runs between the stages. This code must not depend on the mode of
-    // the caller.
+    // Sets the floating-point mode, so that the code between the stages does not depend on the mode of the caller.
     const ArithmeticScope arithmetic;
     settle_start();
     const AdvanceScope scope(world.advancing);

@@ -20,7 +20,7 @@ namespace {
 struct BodySums {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    // sum of magnitudes: of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
+    // sum of the magnitudes of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
     Real momentum_size = 0;  // [kg m/s]
     bool damps_held_body = false, holds_implicit_element = false;
 
@@ -64,8 +64,8 @@ BodySums measure(const Model& model, Real time, Real lag) {
         total.momentum += momentum;
     }
     Real implicit = 0;  // [J]
-    // Momentum of all nodes and bodies whose velocities are changed by kicks [kg m/s]. Nodes of held implicit bodies
-    // are not included, because the theta method moves them.
+    // Momentum of all nodes and bodies whose velocities symplectic Euler changes [kg m/s]. Held implicit bodies are not
+    // included, because the theta method integrates their motion.
     Vec3 kicked = total.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
@@ -79,16 +79,16 @@ BodySums measure(const Model& model, Real time, Real lag) {
     }
     total.kinetic += added_energy(model);
     // The velocities are `lag` (half a step) older than the positions. The kinetic energy is therefore increased by
-    // `lag` times the power of all forces but contacts, which is its change to first order. The reason: with the
-    // velocities v and v' before and after a kick and the mass m, symplectic Euler conserves m v.v' / 2 plus the
-    // elastic energy of linear elastic bodies.
+    // `lag` times the power of all forces but contacts. To first order the result is m v.v' / 2, with the mass m and
+    // the velocities v and v' of two successive steps. For linear elastic bodies, symplectic Euler conserves the sum of
+    // this value and the elastic energy.
     if (lag != 0) {
         total.kinetic -=
             lag * sum_of_own_blocks(model, [&](const Range& blocks) {
                 return kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
             });
         Real power = kicked.dot(model.settings.gravity);
-        if (model.forced)  // the forces of the last step are used, as in balance.work
+        if (model.forced)  // uses the forces of the last step, as balance.work does
             for (std::size_t n = 0; n < nodes.position.size(); ++n) {
                 if (of_ghost(model, n)) continue;
                 // Applied forces, for example of springs, exchange momentum even while all nodes are at rest. They act
@@ -115,8 +115,8 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
-/// True if a node of an implicit element is held. Through the added inertia of the element, moving nodes then pull at
-/// the held node.
+/// True if a node of an implicit element is held. The additional inertia of the element then lets moving nodes exert
+/// forces on the held node, which are not measured.
 bool holds_implicit_element(const Model& model) {
     if (model.clusters.empty()) return false;
     const ElementInputs elements = model.all_elements();
@@ -148,8 +148,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
     Real work = push_work;
-    // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support, or
-    // those of two attachments that squeeze a body.
+    // Each cause counts with its magnitude. Impulses that cancel each other are exchanged momentum too, for example
+    // those of weight and support, or those of two attachments that squeeze a body.
     Vec3 impulse = Vec3::Zero();
     for (const ExternalWork* part : external) {
         impulse += part->impulse;
@@ -192,7 +192,7 @@ void check_balance(const WorldState& world, Real time, Real lag, Balance& balanc
         balance.steps = 0;
         balance.work = balance.energy_flow = balance.momentum_flow = 0;
     }
-    // checked again, because elements may become implicit during a run
+    // tested in every check, because elements may become implicit while the balance is open
     balance.momentum_known &= !now.holds_implicit_element;
     // Only the change of the potential energy counts as exchanged, since the zero point of this energy is arbitrary.
     const Real exchanged =

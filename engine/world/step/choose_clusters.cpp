@@ -1,5 +1,5 @@
-// Choice of the elements to be integrated implicitly: the few elements that would make the steps of all bodies much
-// shorter (docs/methods/clusters.md 5).
+// Choice of the elements of explicit bodies that are integrated implicitly: the few elements that would otherwise make
+// all steps much shorter. The nodes that these elements connect form clusters (docs/methods/clusters.md 5).
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -25,41 +25,41 @@ namespace {
 // Computing time that one entry of a cluster matrix needs in a step [ns]. Only its ratio to element_cost matters: 0.01.
 // Measured ratios are 0.005 to 0.02, for clusters of 48 to 594 nodes in meshes of 10,368 and 48,000 tetrahedra.
 constexpr Real entry_cost = 0.7;
-/// Least factor by which clusters must reduce the computing time of a simulated second. A smaller reduction does not
+/// Clusters must reduce the computing time of a simulated second at least by this factor. A smaller gain does not
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
-/// Upper bound of the moment of inertia that clusters may add to a body. Let I be the smallest principal moment of the
-/// body. The bound is the larger of two values: most_moment * I, and of_lumping times the amount by which lumped masses
-/// increase I. In typical meshes the bound is 3 to 20 % of I.
+/// Upper bound of the moment of inertia that clusters may add to a body with the smallest principal moment I. The bound
+/// is the larger of two values: most_moment * I, and of_lumping times the amount by which lumping of the masses
+/// increases I. In typical meshes the bound is 3 to 20 % of I.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
-/// Factor by which the elements of clusters are assumed to be stiffer than at rest when cluster matrices are computed.
-/// Steps then stay stable while strain stiffens these elements.
+/// Assumed stiffness of the elements of clusters, divided by their stiffness at rest. Cluster matrices are computed
+/// with this stiffness, so that steps stay stable while strain stiffens the elements.
 constexpr Real headroom = 4;
-/// Bodies with more nodes than this count as large. If a step length would make more than most_volume_of_large of the
-/// volume of a large body implicit, the step length is rejected without a search: the implicit elements would probably
-/// form one cluster larger than largest_cluster.
+/// Bodies with more nodes than this count as large. A step length is rejected if more than the fraction
+/// most_volume_of_large of the volume of a large body would be implicit. The implicit elements would then probably form
+/// a cluster larger than largest_cluster. This test is faster than the search for implicit elements.
 constexpr Index nodes_of_large = 8 * static_cast<Index>(largest_cluster);
 constexpr Real most_volume_of_large = 0.25;
-// largest ratio of the stable step with clusters to the stable step without clusters
+// Upper limit of the ratio of the stable step with clusters to the stable step without clusters.
 constexpr Real most_lengthening = 32;
-/// Least ratio of the stable step with clusters to the stable step without clusters. With a smaller ratio the cost
+/// Lower limit of the ratio of the stable step with clusters to that without. With a smaller ratio the computing time
 /// could hardly fall by the factor least_gain.
 constexpr Real least_lengthening = 1.68;
 /// Assumed ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. Both
-/// divide the masses of nodes among elements: a mass share by one number per element, a mass form by a matrix
-/// (docs/methods/stable_step.md 2). The ratio is needed because the search for implicit elements uses mass shares, and
-/// the simulation mass forms. The measured ratio was 1.27 to 1.34 for four meshes.
+/// divide the masses of nodes among elements: a mass share is one number per element, a mass form a matrix
+/// (docs/methods/stable_step.md 2). The search for implicit elements uses mass shares, but the simulation mass forms.
+/// The measured ratio is 1.27 to 1.34 for four meshes.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.blocks[b].size() > 0;
 }
 
-/// True if a body must not have clusters: its nodes are held along single directions, or one of its materials yields.
-/// The impulses that hold the nodes do not pass through the inertia matrices of clusters, and plastic flow changes the
-/// stiffness from which these matrices are computed.
+/// True if a body must not have clusters, for one of two reasons. If one of its materials yields, plastic flow changes
+/// the stiffness from which cluster matrices are computed. If nodes are held along single directions (hold_axes), the
+/// impulses that hold them follow from the masses of single nodes and not from the inertia of clusters.
 bool forbids_clusters(const Model& model, std::size_t b) {
     if (model.yields(b)) return true;
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a)
@@ -74,7 +74,7 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
         .step;
 }
 
-/// Copy of the mass shares, mass forms, frame masses and implicit moduli of a body, from which they can be restored.
+/// Copy of the element columns of a body that depend on which elements are implicit. restore() writes them back.
 struct SavedElements {
     std::vector<ElementLane> mass_share, modulus;
     std::vector<ElementForm> mass_form;
@@ -116,7 +116,8 @@ void note_implicit(Model& model, std::size_t b) {
     model.patches.resize_viscous(model.elements.first.size());
 }
 
-/// Largest increase of the smallest moment of inertia of a body that clusters may cause, as a fraction of this moment.
+/// Upper bound of the moment of inertia that clusters may add to a body, as a fraction of its smallest principal
+/// moment.
 Real largest_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
     return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
@@ -151,7 +152,8 @@ public:
         for (const std::size_t first : twin_) ++groups_[first].bodies;
     }
 
-    /// True if a body is large and too much of its volume would be implicit at the step length `step` [s].
+    /// True if a body is large (nodes_of_large) and too much of its volume would be implicit at the step length `step`
+    /// [s].
     bool too_much_volume(std::size_t b, Real step) {
         TwinGroup& twins = groups_[twin_[b]];
         if (!(model_.bodies.nodes[b].size() > nodes_of_large) || stored_result(twins, step)) return false;
@@ -187,7 +189,7 @@ private:
     };
     struct TwinGroup {
         std::size_t bodies = 0, searched = 0;
-        Real most_moment = 0;  // largest increase of the smallest moment of inertia, as a fraction of this moment
+        Real most_moment = 0;                    // see largest_moment_of
         std::optional<ImplicitSearch> search{};  // created when it is first used
         std::vector<Result> results{};
     };
@@ -195,7 +197,7 @@ private:
         const auto found = std::ranges::find(twins.results, step, &Result::step);
         return found == twins.results.end() ? nullptr : &*found;
     }
-    /// Starts the search of a group of equal bodies with body b, unless it was started before.
+    /// Creates the search of a group of equal bodies, from body b, unless the group already has one.
     void start(std::size_t b, TwinGroup& twins) {
         if (twins.search) return;
         const Range blocks = model_.bodies.blocks[b];
@@ -207,10 +209,11 @@ private:
     Model& model_;
     std::span<Real> stiffness_sum_;
     std::vector<std::size_t> twin_;
-    std::vector<TwinGroup> groups_;  // for each group of equal bodies, at the row of the first body
+    std::vector<TwinGroup> groups_;  // the entry of a group of equal bodies is at the row of its first body
 };
 
-/// Makes every element of a body explicit again, and finds mass shares and mass forms as for a new body.
+/// Makes all elements of a body explicit again, and computes mass shares, mass forms and stable steps as for a new
+/// body.
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<ElementLane> share = rows_of(model.elements.mass_share, blocks);
@@ -225,8 +228,8 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
 
-/// Computing time of a simulated second with steps of length `step` [ns]. `entries`: number of entries of all cluster
-/// matrices.
+/// Computing time of a simulated second [ns], with steps of length `step` [s]. `entries`: number of entries of all
+/// cluster matrices.
 Real cost_of(const Model& model, std::size_t entries, Real step) {
     const std::uint64_t blocks = std::max<std::uint64_t>(model.elements.first.size(), model.of_ranks.element_blocks);
     const Real elements = static_cast<Real>(blocks * element_lanes);
@@ -236,7 +239,7 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 struct PlannedBody {
     std::size_t row;
     Real moment;             // moment of inertia that clusters add, divided by the largest allowed value
-    SavedElements elements;  // elements of the body after the planned change
+    SavedElements elements;  // element columns of the body after the planned change
 };
 
 /// A choice of implicit elements in all bodies, for one step length.
@@ -245,7 +248,7 @@ struct Plan {
     Real cost = 0;  // computing time of a simulated second [ns]
     bool possible = true;
     std::size_t entries = 0;
-    std::vector<PlannedBody> body;  // plans of the bodies that have implicit elements
+    std::vector<PlannedBody> body;  // entries for the bodies that get implicit elements
 };
 
 Plan plan_for(Model& model, Real step, Searches& searches) {
@@ -275,16 +278,16 @@ Real make_planned_implicit(Model& model, const PlannedBody& planned, std::span<R
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 
-/// Sets the step length for which the clusters of a body are made. `stable`: stable step of the explicit elements of
-/// the body [s].
+/// Sets the step length for which the clusters of a body are made to `step` [s]. `stable`: stable step of the explicit
+/// elements of the body [s].
 void set_cluster_step(Model& model, std::size_t b, Real step, Real stable) {
     model.bodies.cluster_step[b] = step;
     note_implicit(model, b);
     model.bodies.rest_step[b] = std::min(step, stable);
 }
 
-/// Longest step for which the planned clusters are not too heavy [s]: the mass that a cluster adds is proportional to
-/// the square of the step length for which it is made. `step`: planned step length. `moment`: moment of inertia that
+/// Longest step for which the planned clusters are not too heavy [s]. The inertia that a cluster adds grows with the
+/// square of the step length for which it is made. `step`: planned step length [s]. `moment`: moment of inertia that
 /// the clusters add at this length, divided by the largest allowed value.
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : infinity;
@@ -300,11 +303,10 @@ Real longest_step(const Model& model) {
 void make_planned_implicit(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model);
-    // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
+    // for each body: stable step of its explicit elements; 0: the plan has no clusters for it [s]
     std::vector<Real> stable(twin.size());
     for (const PlannedBody& body : plan.body) {
-        // bodies with equal meshes have equal plans, so mass forms are computed for the first one and copied to the
-        // others
+        // Equal bodies have equal plans. So mass forms are computed for the first of them, and copied to the others.
         if (const std::size_t first = twin[body.row]; stable[first] > 0) {
             body.elements.restore(model, body.row);
             const auto copy_from_first = [&](auto& column) {
@@ -333,10 +335,10 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Returns the cheapest of the plans for several step lengths, or a plan with step 0 if clusters do not reduce the
-/// computing time by the factor least_gain. First makes plans for 2, 4, 8 ... times the shortest stable step; if none
-/// is cheap enough, also for least_lengthening times it. Then makes plans for some step lengths between that of the
-/// cheapest plan and twice this length.
+/// Returns the plan with the least computing time among the plans for several step lengths. If no plan reduces the
+/// computing time by the factor least_gain, returns a plan with step 0. The first step lengths are 2, 4, 8 ... times
+/// the shortest stable step. If none of them gains enough, least_lengthening times this step follows. The last ones lie
+/// between the best step length so far and twice this length.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};
@@ -369,7 +371,7 @@ bool clusters_allowed(const Settings& settings) {
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present_step, std::span<Real> stiffness_sum) {
     if (forbids_clusters(model, body)) return false;
-    // computing time for inverting a matrix, divided by the cube of its width [ns]
+    // computing time of the inversion of a matrix, divided by the cube of its number of rows [ns]
     constexpr Real inversion_cost = 0.4;
     constexpr Real steps_per_inversion = 128;  // assumed number of steps between two inversions of a cluster matrix
     const Range blocks = model.bodies.blocks[body];

@@ -8,7 +8,7 @@ namespace skerry {
 namespace {
 
 /// Counts how many regions used each shortcut of the solver. The loop has no branches, because a processor cannot
-/// predict which shortcut a region used. All threads wait for this loop.
+/// predict which shortcut a region used. It must be fast, because it runs between two steps while all threads wait.
 void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
     std::uint64_t closed_form = 0, certified = 0, separating = 0, frictionless = 0, in_lanes = 0, swept = 0;
     std::uint64_t iterations = 0, unconverged = 0, contact_steps = 0;

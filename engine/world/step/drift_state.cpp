@@ -1,8 +1,7 @@
-// The drifts of leapfrog outside of steps. A drift moves positions, but not velocities. The first drift of a call moves
-// positions ahead by half of the first step. The steps keep this lead, and the last drift takes back half of the last
-// step, so that positions and velocities at both ends of a call belong to one time. If the step length changes, a drift
-// between two steps changes the lead by half the difference. Every kick then lies in the middle of its step, and each
-// step is symmetric in time.
+// The drifts of leapfrog. A drift changes positions, but not velocities. At both ends of a call of advance(), positions
+// and velocities belong to the same time. The first drift of a call moves positions ahead by half of the first step.
+// Each step then changes velocities in its middle, and is symmetric in time. If the step length changes, a drift before
+// the step changes this lead to half of the new step. The last drift takes it back.
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -42,7 +41,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     move_colliders(ColliderMotionInputs::bind({}, c), clock.time, seconds, c.motion);
     move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
-    const bool pushed = false;  // false, because no contact pushes positions during a drift
+    const bool pushed = false;  // no contact pushes bodies out of overlaps in a drift
     RigidBodyTable& r = model.rigid_bodies;
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
@@ -71,15 +70,14 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
             n.position.span().subspan(first, count), n.displacement_origin.span().subspan(first, count),
             model.bodies.frame[static_cast<std::size_t>(k.body[b])].offset);
     }
-    measure_displacement_of(executor, model, 0, search);  // with a duration of 0 s the frames of bodies do not move
+    measure_displacement_of(executor, model, 0, search);  // 0 s: the moving frames of bodies stay in place
 }
 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {
     for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
         const RigidMotion& motion = colliders.motion[c];
-        // The fastest point of a rotating shape is the point farthest from the axis. Only points near a body matter.
-        // These points lie within the distance `extent` from the origin of the collider, as found by the contact
-        // search.
+        // The speed of a point of a rotating collider grows with its distance from the axis. Only points near a body
+        // matter. According to the contact search, they are at most `extent` away from the origin of the collider.
         const Real turning = motion.angular_velocity.norm();
         const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
         colliders.travel[c] += seconds * (motion.velocity.norm() + rim_speed);

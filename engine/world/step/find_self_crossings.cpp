@@ -1,4 +1,4 @@
-// Checks whether the surfaces of bodies cross themselves. Contacts prevent this only for bodies with self-contact.
+// Finds bodies whose surface crosses itself. Contacts prevent this only for bodies with self-contact.
 #include <algorithm>
 
 #include "engine/base/complaint.h"
@@ -11,12 +11,11 @@ namespace skerry {
 
 namespace {
 
-// Stands for the number of crossings of a body that is not checked here, because this number cannot have changed or
-// another rank owns the body.
+// Placeholder for the number of self-crossings of a body that is not checked: the number cannot have changed, or
+// another rank checks the body.
 constexpr Index unchanged = -1;
 
-/// True if this rank must check the body: it owns the body, and the body may have begun or ceased to cross itself since
-/// the last check.
+/// True if this rank must check the body: it owns the body, and the body may have deformed since the last check.
 bool may_have_changed(const Model& model, std::size_t b) {
     return model.bodies.kind[b] == BodyKind::deformable && !model.is_rigid(b) && !model.bodies.asleep[b] &&
            model.bodies.unstrained[b] == 0 && !model.bodies.is_ghost(b);

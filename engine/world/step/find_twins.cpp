@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// Compares numbers bitwise and not by value, so that equal NaNs count as equal.
+/// Compares rows bitwise and not by value, so that a NaN equals a NaN with the same bits.
 template <class Rows>
 bool same_bits(const Rows& a, const Rows& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -43,7 +43,8 @@ bool are_alike(const Model& model, std::size_t a, std::size_t b) {
 
 std::vector<std::size_t> find_twins(const Model& model) {
     std::vector<std::size_t> twin;
-    // first bodies of groups of equal bodies, by number of nodes, number of element blocks and stable step at rest
+    // First bodies of the groups of equal bodies found so far. The key (number of nodes, number of element blocks,
+    // stable step at rest) saves comparisons of bodies that differ.
     std::map<std::tuple<Index, Index, Real>, std::vector<std::size_t>> first_of;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         std::vector<std::size_t>& first =

@@ -1,5 +1,5 @@
-// Search for bodies with equal meshes and elements. Stable steps and implicit elements found for one of them are valid
-// for all.
+// Search for bodies with equal meshes and elements. Implicit elements and stable steps that are found for one of these
+// bodies hold for all of them.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 namespace skerry {
 
 /// Returns for each body the row of the first body that equals it in rest shape, elements, materials, masses and held
-/// nodes. If no earlier body is equal, this is the row of the body itself. Numbers are compared bitwise, and lists in
-/// order.
+/// nodes. This is the row of the body itself if no earlier body is equal. Numbers are compared bitwise, and lists entry
+/// by entry.
 std::vector<std::size_t> find_twins(const Model& model);
 
 }  // namespace skerry

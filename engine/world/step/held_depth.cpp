@@ -1,5 +1,5 @@
-// Measures how deep held nodes are inside other objects. Contacts between nodes that cannot move are no part of the
-// contact table, so measure_contacts does not see these overlaps.
+// Measures how deep held nodes (nodes whose motion is prescribed) are inside other objects. The contact table does not
+// contain contacts between nodes that no impulse can move, so measure_contacts does not see these overlaps.
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -28,7 +28,8 @@ bool is_led(const Model& model, Index body) {
     return false;
 }
 
-/// Calls visit(node) for each held node on the surface of a body, with rows of NodeTable. `body`: row of BodyTable.
+/// Calls visit(node) for each held node on the surface of a body, with the row of the node in NodeTable. `body`: row of
+/// BodyTable.
 void for_each_held(const Model& model, Index body, auto&& visit) {
     const Range vertices = model.bodies.vertices[static_cast<std::size_t>(body)];
     for (Index v = vertices.begin; v < vertices.end; ++v)
@@ -36,7 +37,7 @@ void for_each_held(const Model& model, Index body, auto&& visit) {
             visit(node);
 }
 
-/// True if a point is in front of the triangle that is nearest to it, and not over an edge of this triangle.
+/// True if a point is in front of its nearest triangle, and its nearest point on this triangle is not on an edge.
 bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& point) {
     const auto& [a, b, c] = model.surface.triangles.node[static_cast<std::size_t>(nearest.triangle)];
     const auto at = [&](Index n) -> const Vec3& { return model.nodes.position[static_cast<std::size_t>(n)]; };
@@ -45,8 +46,8 @@ bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& p
 }
 
 /// Updates `deepest` with held nodes of `body` inside `other`. Only nodes whose nearest triangle has three held nodes
-/// count, because contacts resolve other overlaps. A node in front of its nearest triangle is outside; only for all
-/// other nodes the slow winding number, a sum over all triangles, is computed. `pair`: ContactKey::pair.
+/// count, because contacts can resolve all other overlaps. A node in front of its nearest triangle is outside. Only for
+/// other nodes the winding number is computed (is_outside), which is slow. `pair`: ContactKey::pair of the two objects.
 void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
     const Model& model = world.model;
     const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));

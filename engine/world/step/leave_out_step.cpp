@@ -1,4 +1,4 @@
-// Steps that are skipped because all bodies sleep and nothing moves. In such a step no stage would change anything
+// Finds steps in which all bodies sleep and nothing moves. They are skipped, because no stage would change anything
 // (docs/methods/skipping.md 3.2).
 #include <algorithm>
 
@@ -14,15 +14,15 @@ namespace {
 bool all_bodies_rest(const BodyTable& bodies) {
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         if (bodies.kind[b] == BodyKind::deformable && !bodies.asleep[b]) return false;
-        // A body that has just fallen asleep still has a speed. A step that runs the stages must first set this speed
-        // to zero.
+        // A body that has just fallen asleep still has the speed of its last step. One more step must run its stages,
+        // which set this speed to zero.
         if (bodies.max_speed[b] != 0) return false;
     }
     return true;
 }
 
-/// Computes the motion of all rows of a table (colliders or attachments) in this step. Returns true if none of them
-/// moves.
+/// Computes the motion in this step of all colliders or all attachments, the rows of `table`. Returns true if none of
+/// them moves.
 bool all_stand_still(auto& table, Real time, Real h) {
     move_colliders(ColliderMotionInputs::bind({}, table), time, h, table.motion);
     return std::ranges::all_of(table.motion, [](const RigidMotion& motion) { return motion.stands_still(); });
@@ -41,8 +41,8 @@ bool a_force_changes(const Model& model, Real time, Real h) {
     });
 }
 
-/// True if stable steps of stored shapes are still to be evaluated. A stage does this, so the step must not be skipped.
-/// Such a body may have fallen asleep after its shape was stored.
+/// True if the stable step of a stored shape is still to be evaluated. A stage evaluates it, so the step must not be
+/// skipped. This can happen although all bodies sleep: a body may have fallen asleep after its shape was stored.
 bool checks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;
@@ -71,7 +71,7 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces) {
 
 void check_balance_after_motion(WorldState& world) {
     Balance& balance = world.record.balance;
-    // the balance cannot have changed, because nothing has moved since the last check
+    // nothing has moved since the last check, so the balance is unchanged
     if (balance.open && world.scratch.skipped && world.record.balance_of_rest) return;
     join_records(world);
     check_balance(world, world.clock.time, lag_between_steps(world), balance);

@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Adds links (pairs of joined bodies): for each row of a table such as ties, its first body with each other body that
-/// the row joins. A tie joins nothing once all of its nodes have broken off.
+/// Adds the links (pairs of joined bodies) of a table such as JointTable. Each row adds pairs of its first body with
+/// every other body that it joins. A tie whose nodes have all broken off joins nothing.
 template <class Table>
 void add_links(Table& table, BodyLinks& links) {
     const AnyTable any(table);
@@ -49,8 +49,8 @@ void note_forces(Model& model) {
         if (element->derive) element->derive(model);
     }
     note_force_rates(model);
-    // If the last force element was removed, `forced` stays true for the next step: its balance of energy uses the
-    // forces of the step before, because velocities lag behind positions.
+    // If the last force element was removed, `forced` stays true for one more step. Velocities are older than
+    // positions, so the energy balance of this step uses the forces of the step before.
     if (was_forced && !model.forced)
         model.forced =
             std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });

@@ -32,8 +32,8 @@ Real fastest_spin(const Model& model, Index* body) {
 }
 
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
-    // Largest rotation of a body with a joint or tie in a step [rad]. During a step, the rows of joints and ties keep
-    // the directions that they had at its start. The resulting errors of energy and position grow with the rotation.
+    // Largest rotation of a body with a joint or tie in a step [rad]. The equations of joints and ties use the
+    // directions at the start of the step. The resulting errors of energy and position grow with the rotation.
     constexpr Real largest_turn = 0.1;
     Index body = no_index;
     Real spin = fastest_spin(model, &body);

@@ -1,5 +1,5 @@
-// Interfaces for extensions of a step: force elements, motion models and constraint laws. step.cpp iterates over one
-// list for each of these three kinds, and does not name any entry.
+// Interfaces for extensions of a step: force elements, motion models and constraint laws. For each of these three
+// kinds, step.cpp iterates over one list and names none of its entries.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace skerry {
 /// A function that adds stages to the graph of the step.
 using ListStages = void (*)(WorldState&, TaskGraph&);
 
-/// A force element: a force on nodes that is neither an elastic force of a body nor a constraint. It acts on the nodes
-/// of all bodies, whatever their motion model. The balance of a run counts its forces as external work, unless the
+/// A force element: a force on nodes that is neither an elastic force of a body nor a constraint. It can act on bodies
+/// of every motion model. The energy balance of a run counts the work of its forces as external work, unless the
 /// element has a function `energy`. All members after add_forces may be null.
 struct ForceElement {
     // Returns whether the world has at least one object of this kind, for example a spring. If it has none of any kind,
@@ -29,21 +29,23 @@ struct ForceElement {
     // positions.
     void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
-    // For each body, raises the entry of `of_body` to this force element's bound of a damping rate [1/s], if that is
-    // larger. A rate is such a bound if in a step of length h the dampers reduce no velocity below exp(-rate h) times
-    // its value. The rate limits the stable step.
+    // For each body, finds an upper bound of the rate at which the dampers of this force element slow its nodes [1/s].
+    // In a step of length h they reduce no velocity below exp(-rate h) times its value. An entry of `of_body` that is
+    // below this rate is raised to it. The rate limits the stable step.
     void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
-    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. These
+    // For each body, adds the rate c of drag forces -c m v on its nodes with the mass m and the velocity v [1/s]. These
     // forces limit the stable step too, because they are computed with the velocities at the start of the step.
     void (*add_drag)(const Model&, std::span<Real> of_body) = nullptr;
-    ListStages mark_driven = nullptr;  // marks, in StepScratch::driven, bodies on which the force changes with time
+    // marks in StepScratch::driven the bodies that must be awake, because the force on them changes with time
+    ListStages mark_driven = nullptr;
     // Returns true if the forces change with time in the step of length `h` [s] that starts at time `t` [s], even if no
     // body moves.
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
-    ListStages measure = nullptr;   // measures work and losses, which the balance then no longer counts as external
+    // measures work and losses, so that the balance does not count them as external work
+    ListStages measure = nullptr;
     ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
-    // Stored energy at the time `t` [s], with a correction for velocities that are `lag` seconds older than positions
-    // [J]; see spring_energy (systems/forces/springs.h).
+    // Stored energy at the time `t` [s], with a correction if velocities are `lag` seconds older than positions [J].
+    // spring_energy (systems/forces/springs.h) is an example.
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 
@@ -53,16 +55,18 @@ struct ForceElement {
 struct MotionModel {
     ListStages add_forces = nullptr;  // adds the elastic forces for the positions at the start of the step
     ListStages predict = nullptr;     // computes the velocities at the end of the step, without contacts
-    // prepares the response of bodies to contact impulses, if it is more than that of lumped masses
+    // prepares the response of bodies to contact impulses, if the nodes of a body do not respond as single masses
     ListStages couple = nullptr;
-    ListStages apply = nullptr;  // changes internal degrees of freedom by the contact impulses that the solver found
+    // lets the contact impulses that the solver has found act on internal degrees of freedom
+    ListStages apply = nullptr;
     ListStages find_pose = nullptr;  // computes the pose at the end of the step, before the checks
     ListStages check = nullptr;      // checks the state at the end of the step, and measures losses
     ListStages integrate = nullptr;  // moves the bodies if the step can be committed
 };
 
-/// A constraint law: rows of the contact problem that obey one kind of law. Each member is a function that lists the
-/// stages of the law in one phase of the step. A null pointer means that the law has no stages in this phase.
+/// A constraint law: one kind of rows (equations or inequalities) of the contact problem. Each member is a function
+/// that lists the stages of the law in one phase of the step. A null pointer means that the law has no stages in this
+/// phase.
 struct ConstraintLaw {
     ListStages find = nullptr;      // finds the rows of this step and the impulses with which the solver starts
     ListStages take = nullptr;      // removes rows that were in the contact table only for the solve
@@ -80,13 +84,13 @@ extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law, held_axes
 inline constexpr std::array<const ForceElement*, 6> force_elements{&nodal_loads,  &loads_and_fields, &spring_forces,
                                                                    &cable_forces, &cavity_pressures, &fibre_forces};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come before implicit
-/// bodies, because the former also move the frames relative to which the latter deform. Held axes come last, because
-/// they correct the velocities that other models predict.
+/// bodies, because their model also moves the frames relative to which implicit bodies deform. Held axes (nodes held
+/// along single directions) come last, because they correct the velocities that other models predict.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies, &held_axes};
-/// All constraint laws. Contacts come first, because the rows of ties follow the contacts in the contact table. Held
-/// axes come last, because they have rows for the nodes of all other rows. `take` is called in the reverse order, so
-/// that each law finds its rows at the end of the table.
+/// All constraint laws. Contacts come first, because they are the first rows of the contact table, and rows of ties
+/// follow them. Held axes come last, because they have rows for those nodes that rows of other laws touch. `take` is
+/// called in the reverse order, so that each law finds its rows at the end of the table.
 inline constexpr std::array<const ConstraintLaw*, 5> constraint_laws{&contact_law, &joint_law, &tie_law, &cable_law,
                                                                      &held_axes_law};
 
@@ -96,7 +100,7 @@ inline auto if_taken(const WorldState& world) {
     return only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions),
                    value(world.scratch.parameters));
 }
-/// Condition of a stage that serves the sleep of bodies: the stage runs only if bodies can fall asleep.
+/// Condition of a stage that lets bodies fall asleep or wake: the stage runs only if the settings allow sleep.
 inline auto if_sleepy(const WorldState& world) {
     return only_if([](const SleepSettings& sleep) { return sleep.on(); }, value(world.scratch.parameters.sleep));
 }

@@ -23,7 +23,7 @@ namespace {
 // that close within a step, and of contacts with rotating faces, grow with the step length.
 constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
-/// Entry of `of_body`; zero for a body that was added after this column was computed.
+/// Entry of a body in the column `of_body`; zero if the body was added after the column was computed.
 Real bound_of(const Column<Real>& of_body, std::size_t body) {
     return body < of_body.size() ? of_body[body] : 0;
 }
@@ -32,22 +32,23 @@ Real bound_of(const Column<Real>& of_body, std::size_t body) {
 
 Real step_of_body(const Model& model, std::size_t body) {
     Real step = model.bodies.stable_step[body];
-    // Adds bounds of squared natural frequencies: 4 / step^2 for the elements, and `rate` for the force elements. The
-    // largest eigenvalue of a sum of symmetric matrices is at most the sum of their largest eigenvalues.
+    // Adds two bounds of squared natural frequencies: 4 / step^2 for the elements, and `rate` for the force elements.
+    // The sum is a bound for both together, because the largest eigenvalue of a sum of symmetric matrices is at most
+    // the sum of their largest eigenvalues.
     if (const Real rate = bound_of(model.force_rate, body); rate > 0) step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
     damping += bound_of(model.force_damping, body);
-    // In each step of length h, damping multiplies velocities by a factor k. A mode of the circular frequency omega is
-    // then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `half` is 1 + k; without damping it is
-    // 2.
+    // In each step of length h, damping multiplies velocities by the factor k = exp(-damping h). A mode of the circular
+    // frequency omega is then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `half` is 1 + k for
+    // h = `step`; without damping it is 2.
     const Real half = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
     step *= std::sqrt(half / 2);
     const Real drag = bound_of(model.force_drag, body);
     if (!(drag > 0)) return step;
-    // Forces -c m v reduce the factor k by c h. The condition is then (omega h)^2 < 2 (1 + k - c h), and the result is
-    // the root h of this quadratic equation. In bodies that have no other limit, the bound 1/c prevents a change of the
-    // sign of velocities.
+    // Drag forces -c m v with the rate c reduce the factor k by c h. The condition is then (omega h)^2 < 2 (1 + k - c
+    // h). The result is the h for which both sides are equal. The bound 1/c keeps drag from reversing velocities; for
+    // bodies without elements it is the only limit.
     const Real share = std::isfinite(step) ? drag * step / (2 * half) : 0;
     return std::min(std::isfinite(step) ? step * (std::sqrt(1 + share * share) - share) : step, 1 / drag);
 }
@@ -67,8 +68,8 @@ Real stable_step(const Model& model, Index* body) {
 }
 
 bool is_strained(const Model& model, std::size_t body) {
-    // Largest ratio of the stable step of a body to its stable step at rest for which strain counts as the cause of a
-    // short step. Above this ratio the cause is the rest shape.
+    // Strain counts as the cause of a short step if the stable step of the body is less than this fraction of its
+    // stable step at rest. Otherwise the rest shape is the cause.
     constexpr Real as_at_rest = 0.9;
     return model.bodies.stable_step[body] < as_at_rest * model.bodies.rest_step[body];
 }
@@ -95,10 +96,10 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Returns a step length that is stable for the explicit elements of a body with clusters [s]. It may be longer than
-/// `stable`, a length known to be stable, if the body is strained in a few places only. `longest`: longest length that
-/// is of use. Returns `stable` if this is at least `longest`, if the body has no clusters, or if no longer step is
-/// found.
+/// Returns a step length that is stable for the explicit elements of a body [s]. It may be longer than `stable`, a
+/// length that is known to be stable, if a body with clusters is strained in a few places only. `longest`: length above
+/// which a longer result is of no use [s]. Returns `stable` if `stable` is at least `longest`, if the body has no
+/// clusters, or if no longer step is found.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real longest, Real stable,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -122,8 +123,8 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
 }
 
 /// Stable step of a body with its clusters [s]; NaN for an invalid shape. `step`: stable step of the explicit elements
-/// of the body. If an implicit element has become stiffer than assumed by a factor s > 1, its cluster is stable up to
-/// cluster_step / sqrt(s) only.
+/// of the body [s]. A cluster is made for the step length cluster_step and an assumed stiffness of its elements. If an
+/// element is stiffer by a factor s > 1, the cluster is stable up to cluster_step / sqrt(s) only.
 Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
@@ -153,11 +154,10 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // More elements of a body become implicit when its stable step is shorter than goal_ / worth_clusters. They are
-        // those that are unstable at the step length reserve * goal_. With reserve > 1 a body without clusters stays
-        // stable until the next evaluation. In a body that already has clusters, fewer elements become implicit, and
-        // only at larger strain, because elements stay implicit when strain decreases, although their stable step then
-        // grows again.
+        // Elements of a body become implicit when its stable step is shorter than goal_ / worth_clusters: those
+        // elements that are unstable at the step length reserve * goal_. In a body without clusters, reserve > 1 lets
+        // the body stay stable until the next evaluation. In a body with clusters, both numbers make fewer elements
+        // implicit, and later. Elements stay implicit when their strain decreases, even if they need it no longer.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -216,15 +216,15 @@ Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
 
 namespace {
 
-/// Number of pieces into which the check of a body's stable step is divided; sent to other ranks. `world_row`: row of
-/// the body in the undivided world.
+/// Message to other ranks: number of pieces into which the evaluation of a body's stable step is divided. `world_row`:
+/// row of the body in the undivided world.
 struct PiecesOfBody {
     Index world_row;
     std::uint32_t pieces;
 };
 
-/// Computes RankState::pieces_before: for each row of the undivided world, the number of pieces of all bodies before
-/// it. The last entry is the number of all pieces. Collective.
+/// Computes RankState::pieces_before: for each row of the undivided world, the number of pieces of all bodies in
+/// earlier rows. The last entry is the number of all pieces. Collective.
 void gather_pieces(const Model& model, RankState& ranks) {
     std::vector<PiecesOfBody> own_pieces;
     const ElementInputs elements = model.all_elements();
@@ -269,7 +269,7 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round) {
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target =
         static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(watch.first_piece[bodies.slot.size()])));
-    // unused rows are set to 0, because saved worlds contain them too
+    // new rows are set to 0, because saved worlds contain rows that are not used yet
     watch.position.resize(model.nodes.position.size(), Vec3::Zero());
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());

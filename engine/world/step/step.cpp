@@ -1,7 +1,7 @@
 // The step on one page: a list of stages in phases. The task graph derives the order of the stages from the data that
-// the stages read and write. So forces and contact search run in parallel, and so do the solves of different regions
-// (docs/figures/step_graph.svg). The name of a stage has the form folder/function. The function bind() of an input
-// struct lists the columns that the stage reads.
+// they read and write (docs/figures/step_graph.svg). Stages without common data, such as element forces and contact
+// search, run in parallel. The name of a stage has the form folder/function. The function bind() of an input struct
+// lists the columns that the stage reads.
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
@@ -122,7 +122,8 @@ void move_as_scripted(WorldState& w, TaskGraph& g) {
             write(n.velocity));
 }
 
-/// Lists the stage that evaluates stable steps. This stage runs in parallel with all other stages.
+/// Lists the stage that evaluates stable steps, for shapes that store_shapes has copied. The stage therefore runs in
+/// parallel with all other stages.
 void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
@@ -130,8 +131,9 @@ void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
             make(w.scratch.watch_parts), make(m.watch));
 }
 
-/// Lists the stages that divide contacts into regions. Two contacts belong to the same region if impulses of both
-/// change the motion of the same degrees of freedom.
+/// Lists the stages that divide contacts into regions, which are solved independently. Two contacts belong to the same
+/// region if their impulses change the motion of common degrees of freedom, directly or through other contacts. The
+/// first stages mark bodies that must be awake.
 void separate(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ContactTable& c = w.scratch.contacts;
@@ -182,8 +184,8 @@ void measure_forces(WorldState& w, TaskGraph& g) {
             value(p.kick_time), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
-/// Lists the checks that all motion models share: velocities are finite and slow enough, and no element deforms too
-/// much in one step. Also lists the stage that measures external work.
+/// Lists the checks that all motion models share: velocities are finite, and no element deforms too much in one step.
+/// Also lists the stages that measure external work and the work of force elements.
 void check_end(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     NodeTable& n = m.nodes;
@@ -213,7 +215,8 @@ void wake(WorldState& w, TaskGraph& g) {
             write(b.still_time), if_taken(w), if_sleepy(w));
 }
 
-/// Lists the stage that measures the travel of bodies since the last search for contact candidates.
+/// Lists the stage that measures how far the nodes of bodies have moved. With these distances the next step decides for
+/// which objects to search contact candidates again.
 void measure_travel(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.model.nodes;
     BodyTable& b = w.model.bodies;

@@ -12,8 +12,8 @@ namespace skerry {
 
 namespace {
 
-/// Number of elements plus contacts below which the stages run on the calling thread. Waking the workers would take
-/// longer than such a small step (profiling/step measures it).
+/// Number of elements plus contacts below which all stages run on the calling thread. To wake the worker threads would
+/// take longer than such a small step (measured by profiling/step).
 constexpr std::size_t inline_work = 1024;
 
 /// Largest number of attempts with the same step length if surfaces cross. Crossings found in an attempt become
@@ -21,33 +21,33 @@ constexpr std::size_t inline_work = 1024;
 constexpr int tries_at_one_length = 4;
 
 /// A step in which surfaces cross is repeated with half its length, if it is longer than StepPlan::regular divided by
-/// this factor. In the next steps the length grows again. Limits predicted from the speed of deformation are at least
-/// regular / most_shortening. The bound applies to the length and not to the number of halvings, because a few halvings
-/// in each of many steps would make steps shorter and shorter.
+/// this factor. In the next steps the length grows again. Lengths that are predicted from the speed of deformation have
+/// the same lower limit. The length is limited and not the number of halvings, because a few halvings in each of many
+/// steps would make steps shorter and shorter.
 constexpr Real most_shortening = 128;
 
 /// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length, if
-/// it is longer than StepPlan::regular divided by this factor. The factor is large because material squeezed between a
-/// rigid body and held nodes is ejected at several hundred times the speed of the rigid body.
+/// it is longer than StepPlan::regular divided by this factor. The factor must be large: material that is squeezed out
+/// between a rigid body and held nodes moves several hundred times as fast as the rigid body.
 constexpr Real most_shortening_against_speed = 1024;
 
 /// A step that turns elements inside out is repeated with half its length, if it is longer than StepPlan::regular
-/// divided by this factor. Otherwise the inversion is accepted. In thrown meshes, halving the step prevents a third of
-/// the inversions. Where elements are squeezed and not thrown, shorter steps do not prevent inversion, but they
-/// conserve the energy of crushed bodies. With the factor 2 instead of 4, or with faster growth of the steps, a ball
-/// shot at a wall gains a third more energy.
+/// divided by this factor. Otherwise the inversion is accepted. Halving prevents a third of the inversions in thrown
+/// meshes. It does not prevent inversions in squeezed meshes, but reduces the energy that crushed bodies gain. With the
+/// factor 2 instead of 4, or with faster growth of the steps, a ball shot at a wall gains a third more energy.
 constexpr Real most_shortening_against_inversion = 4;
 
 /// Factor by which AttemptLimits::longest grows in each committed step.
 constexpr Real step_growth = 1.2;
 
-/// Largest ratio of a step length to the previous one while the speed of deformation limits the steps.
+/// Upper limit of the ratio of a step length to the previous one, while the speed of deformation limits the steps.
 constexpr Real fast_growth = 1.5;
 
-/// Fraction of the allowed strain change for which the next step is planned, because the next step may deform elements
-/// faster than the present one. This margin usually suffices.
+/// Fraction of the largest allowed change of strain for which the next step is planned. It is below 1 because the next
+/// step may deform elements faster than the present one.
 constexpr Real strain_margin = 0.9;
-/// A step that deforms an element too fast is repeated with a length between these two fractions of its length.
+/// Upper and lower limit for the length of a repeated step, after an attempt that deformed an element too fast, as
+/// fractions of the length of this attempt.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -55,8 +55,7 @@ void copy(std::span<const Real> from, Column<Real>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Resets the velocities of sleeping bodies, to which a contact may have given a velocity in an attempt that is not
-/// committed.
+/// Sets velocity_next of sleeping bodies to zero. Contacts may have changed it in an attempt that is not committed.
 void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
         const Range nodes = bodies.nodes[b];
@@ -65,9 +64,9 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     }
 }
 
-/// Kick of a step: time for which forces act on velocities [s]. Symplectic Euler is leapfrog with velocities half a
-/// step behind the positions. Its kick lasts from the middle of the last step to the middle of this step
-/// (docs/methods/time_stepping.md 1.5). With leapfrog the kick lasts as long as the step.
+/// Returns the kick of a step: the time for which forces act on velocities [s]. With leapfrog it is the length of the
+/// step. Symplectic Euler is leapfrog with velocities half a step behind the positions; its kick lasts from the middle
+/// of the last step to the middle of this step (docs/methods/time_stepping.md 1.5).
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
@@ -80,8 +79,8 @@ Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) 
     return (before + plan.h) / 2;
 }
 
-/// Runs the stages of a step, unless nothing moves. The stages write their results to world.scratch. Returns false if a
-/// check before the stages refuses the step.
+/// Runs the stages of an attempt, unless nothing moves. The stages write their results to world.scratch. Returns false
+/// if the attempt fails before the stages, because a body is too far from the origin.
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
@@ -123,9 +122,9 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Makes the element rotations and spring strains of this step the input of the next step. Columns are swapped if no
-/// body sleeps. Rows that this step has not computed are then swapped too, which is harmless: both columns have equal
-/// values for unstrained bodies, and rows of led ghosts are never read.
+/// Makes the element rotations and spring strains that this step has computed the input of the next step. If no body
+/// sleeps, it swaps whole columns, which is faster. This also swaps rows that the step has not computed. They do no
+/// harm: for unstrained bodies both columns have equal values, and rows of led ghosts are never read.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -133,8 +132,8 @@ void keep_frames(WorldState& world) {
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
-    // Copies the rows that the stages of this step computed. awake_elements() still gives those rows, because it
-    // changes only when the next step begins, even if bodies fell asleep or woke in this step.
+    // Copies only the rows that the stages of this step have computed. awake_elements() still returns these rows,
+    // although bodies may have fallen asleep or woken in this step: it changes only when the next step begins.
     keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 
@@ -145,8 +144,9 @@ void flow(WorldState& world) {
     world.scratch.findings.plastic = yield_blocks(world, world.model.awake_elements(), world.model.all_blocks());
 }
 
-/// Clears the mark `unstrained` of all bodies in contact. Must be called after a push-out, which can deform bodies
-/// without changing their velocities.
+/// Clears the mark `unstrained` of all bodies in contact. Must be called after a step in which contacts pushed bodies
+/// out of overlaps (RegionTable::pushed). A push-out changes positions but not velocities, so find_unstrained would not
+/// notice the strain.
 void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
     for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
         for (const Index body : *column)
@@ -266,7 +266,7 @@ AttemptLimits limits_of_next_attempt(const StepScratch& scratch, const StepPlan&
     return next;
 }
 
-/// Counts an attempt that is given up for a shorter step.
+/// Counts an attempt that is given up for a shorter one, under the cause for it.
 void note_try(WorldState& world) {
     const StepFindings& found = world.scratch.findings;
     const StepLimit limit = shortened_by(found);
@@ -277,7 +277,8 @@ void note_try(WorldState& world) {
     world.record.limits.count_try(limit, handle, name);
 }
 
-/// Returns the outcome of an attempt, according to the table of StepOutcome.
+/// Returns the outcome of an attempt, according to the table at StepOutcome. `again_over_ranks`: the ranks must repeat
+/// the attempt. `beyond_lists`: features may cross that were not in the contact lists.
 StepOutcome judge(const StepScratch& scratch, bool again_over_ranks, bool beyond_lists, const StepPlan& plan,
                   AttemptLimits& attempt) {
     const StepFindings& found = scratch.findings;
@@ -328,9 +329,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     world.cache.crossings.last_attempt = attempt.letting_through;
     world.cache.crossings.beyond_lists = false;
     world.cache.crossings.found_count = 0;
-    // Largest number of repetitions of an attempt with longer contact lists. Several may be needed, because contacts
-    // found in the longer lists change the motion, which may then exceed the lists again. After that, pairs that come
-    // near enough to cross without being in the lists count as crossings.
+    // Largest number of repetitions of an attempt with longer contact lists. Several may be needed: contacts found in
+    // the longer lists change the motion, which may then exceed these lists too. After the last repetition, features
+    // that come near enough to cross without being in the lists count as crossings.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -351,8 +352,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // The shorter attempt has another motion, so it finds crossings anew. If the abandoned attempt found an
-            // inversion instead of a crossing, the crossings of earlier attempts remain contacts.
+            // Crossings are cleared, because the shorter attempt has another motion and finds its crossings anew. If
+            // the reason is an inversion and not a crossing, the crossings of earlier attempts remain contacts.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world);
             attempt = limits_of_shorter_attempt(world, plan, attempt);

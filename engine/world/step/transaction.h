@@ -1,5 +1,5 @@
 // A step is either committed as a whole or changes nothing. This file declares attempts at a step, their outcomes, and
-// the restoration of overwritten data.
+// the class that restores overwritten data.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,13 @@ namespace skerry {
 struct StepPlan;
 struct WorldState;
 
-/// Outcome of one attempt at a step of length h. After all outcomes but `committed` the world is in its state before
-/// the attempt. The regular step is StepPlan::regular.
+/// Outcome of one attempt at a step of length h. After every outcome but `committed`, the world is again in its state
+/// before the attempt. The regular step is StepPlan::regular. Region labels name a contact region in the same way on
+/// all ranks; ranks exchange them in rounds (RegionLabel).
 ///
 ///     attempt -- good ------------------------------------------------------------> committed
 ///      |---- a rank lacks bodies or region labels of other ranks ----------------> again_over_ranks --------> attempt
-///      |---- features near enough to cross were not in the lists -----------------> again_with_longer_lists -> attempt
+///      |---- features that may cross are not in the contact lists ----------------> again_with_longer_lists -> attempt
 ///      |---- features cross, fewer than 4 attempts of this length ----------------> again_with_crossings ----> attempt
 ///      |---- features cross; h > regular step / 128 ------------------------------> again_shorter -----------> attempt
 ///      |---- a body is too fast or unsolved; h > regular step / 1024 -------------> again_shorter -----------> attempt
@@ -31,7 +32,7 @@ struct WorldState;
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
     committed,
-    again_over_ranks,         // the same attempt again, after an exchange of bodies or more rounds of region labels
+    again_over_ranks,         // the same attempt again, after an exchange of bodies or with more rounds of labels
     again_with_longer_lists,  // the contact lists lacked features that might cross; the next attempt has longer lists
     again_with_crossings,     // crossing features are contacts of the next attempt with the same length
     again_shorter,            // the next attempt is half as long, or as long as the rate of deformation allows
@@ -41,38 +42,42 @@ enum class StepOutcome {
 
 /// Limits of the next attempt at a step. They come from attempts at this step and at earlier steps.
 struct AttemptLimits {
-    // Upper bound of the step length after crossings, inversions or steps that Newton's method could not solve [s]. The
-    // bound grows in each committed step.
+    // Upper bound of the step length [s]. Crossings, inversions and failures of Newton's method reduce it. It grows
+    // after each committed step.
     Real longest = infinity;
-    Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation at joints and ties [s]
-    Index fastest = no_index;      // row in the undivided world of the body that causes `slow_enough`
-    int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
-    int with_crossings = 0;        // number of attempts with this step length in which features crossed
-    bool over_ranks = false;       // true after an attempt at this step that all ranks have abandoned together
-    bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions
-    // Cause of the bound `longest`: the last cause for which an attempt was shortened, apart from speed.
+    // upper bound of the step length by the speed of deformation and of rotation at joints and ties [s]
+    Real slow_enough = infinity;
+    Index fastest = no_index;   // row in the undivided world of the body that causes `slow_enough`
+    int with_longer_lists = 0;  // number of attempts at this step whose contact lists lacked features that may cross
+    int with_crossings = 0;     // number of attempts with this step length in which features crossed
+    bool over_ranks = false;    // true after an attempt at this step that all ranks have abandoned together
+    // true if the next attempt at this step is the last one, which accepts crossings and inversions
+    bool letting_through = false;
+    // Cause of the bound `longest`: the last reason, other than speed, for which an attempt was shortened.
     StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row in the undivided world of the body that caused the bound `longest`
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };
 
-/// Returns the longest step [s] in which the fastest element deforms by at most 90 % of the allowed amount, but at
-/// least `stable` / 128. `stable`: upper bound of the step length by all other limits [s].
+/// Returns the longest step in which the fastest element deforms by at most 90 % of the allowed amount
+/// `max_strain_step`, but never less than `stable` / 128 [s]. `stable`: upper bound of the step length by all other
+/// limits [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
-/// Attempts the planned step within the limits `attempt`. Returns the outcome, and updates `attempt` for the next
-/// attempt.
+/// Attempts the planned step. Returns the outcome. `attempt`: the limits with which the step was planned; replaced by
+/// the limits of the next attempt.
 StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& attempt);
 
 /// Restores data that an attempt, or a call of advance, overwrites before its success is known. This is the only list
 /// of these data:
 ///
 ///     data                                      written by             undone by
-///     nodes.velocity of held and led nodes      drive_nodes            a copy from the start of the attempt
+///     nodes.velocity of attached nodes          drive_nodes            a copy from the start of the attempt
 ///     bodies.max_speed, bodies.frame_speed      check_state            a copy from the start of the attempt
 ///     nodes.velocity_next of sleeping bodies    solve_regions          zero, its value as long as they sleep
 ///     nodes.position, nodes.velocity, time,
+///     implicit_nodes.displacement,
 ///     rigid_bodies.center, rotation, moments
 ///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
@@ -93,14 +98,15 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// keep_stiffness and restore_stiffness store and restore elements.implicit_modulus and clusters.inverse.
+    /// Store and restore elements.implicit_modulus and clusters.inverse, the assumed stiffness of implicit elements and
+    /// the matrices that follow from it.
     void keep_stiffness(const Model& model);
     void restore_stiffness(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
 
-    /// begin_call and roll_back_call store and restore the state at the start of a call of advance. They do nothing
-    /// with symplectic Euler, because only leapfrog moves positions before the first step of a call.
+    /// Store and restore the state at the start of a call of advance. Only leapfrog moves positions before the first
+    /// step of a call, so both functions do nothing with symplectic Euler.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
@@ -109,7 +115,7 @@ private:
     Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
     Column<Vec3> driven_velocity_;          // velocities of attachments.node at the start of the attempt [m/s]
     Real time_ = 0;                         // time at the start of the call [s]
-    Column<Vec3> position_, velocity_;      // positions and velocities of all nodes at the start of the call [m, m/s]
+    Column<Vec3> position_, velocity_;      // positions [m] and velocities [m/s] of all nodes at the start of the call
     Column<Vec3> center_;                   // centres of rigid bodies [m]
     Column<Vec3> moments_;                  // principal moments of inertia of rigid bodies [kg m^2]
     Column<Mat3> rotation_, axes_;          // rotations and principal axes of rigid bodies

@@ -1,4 +1,4 @@
-// Passes contact problems to subscribers, mostly for comparison with other solvers.
+// Passes the contact problems of steps to a subscriber, mostly for comparison with other solvers.
 #include <algorithm>
 #include <functional>
 #include <set>
@@ -21,8 +21,8 @@ void keep_column(std::span<const T> from, Column<T>& to) {
     std::copy(from.begin(), from.end(), to.begin());
 }
 
-/// Replaces each entry of `contact_indices`, a row of `contacts`, by the index of this contact in the list that
-/// World::contacts() returns. This list also contains contacts of sleeping bodies.
+/// The entries of `contact_indices` are rows of `contacts`. Replaces each of them by the index of the contact in the
+/// list that World::contacts() returns. This list is longer, because it also contains contacts of sleeping bodies.
 void number_as_in_view(const ContactTable& contacts, const RestingContactTable& resting,
                        std::vector<Index>& contact_indices) {
     if (resting.empty()) return;
@@ -34,8 +34,8 @@ void number_as_in_view(const ContactTable& contacts, const RestingContactTable& 
     for (Index& row : contact_indices) row = index_of[static_cast<std::size_t>(row)];
 }
 
-/// Directions in which attachments hold nodes. `entries`: entries of AttachmentTable::node to include, which are those
-/// of nodes in contact regions of the step.
+/// Returns the directions along which attachments hold nodes. `entries`: indices in AttachmentTable::node of the nodes
+/// to include: those that belong to a contact region of the step.
 std::vector<HeldDirection> held_directions(const AttachmentTable& attachments, std::span<const Index> entries) {
     std::vector<HeldDirection> held;
     if (entries.empty()) return held;
@@ -93,7 +93,7 @@ void show_contact_problem(const WorldState& world, Real time) {
     problem.time = time;
     problem.step_size = scratch.parameters.h;
     problem.problem.name = "step " + std::to_string(problem.step);
-    // The function is copied, because its call may end the subscription.
+    // The function is copied, because it may end its own subscription while it runs.
     const std::function<void(const StepProblem&)> take = record.problem_watch.take;
     take(problem);
 }

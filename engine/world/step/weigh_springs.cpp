@@ -44,7 +44,8 @@ void weigh_springs(Model& model) {
 
 namespace {
 
-/// Upper bound, for all directions, of the inverse mass of the frame of a rigid or implicit body at an anchor [1/kg].
+/// Upper bound over all directions of the inverse mass that an anchor gets from the rigid motion of its body [1/kg]. It
+/// is 0 for a body that is neither rigid nor implicit, and for a held one.
 Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std::size_t s) {
     if (anchors.body[s] == no_index) return 0;
     const auto body = static_cast<std::size_t>(anchors.body[s]);
@@ -73,8 +74,8 @@ void add_spring_rates(Model& model, std::span<Real> of_body) {
     }
 }
 
-// Raises the bound of each body to the largest damping rate of a single damper on it. The rates are not summed, because
-// each damper counts only with its share of a mass on which several dampers act.
+// Raises the bound of each body to the largest rate of a single damper on it. The rates of several dampers on one mass
+// are not summed. Each rate is instead computed as if its damper had only an equal share of the mass.
 void bound_spring_damping(const Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     const auto divided = [&](const AnchorMass& mass, const AnchorInputs& anchors, std::size_t s) {

@@ -1,4 +1,4 @@
-// Inverse masses at the anchors of springs, and the bounds by which springs limit the stable step
+// Inverse masses at the anchors (ends) of springs, and the bounds by which springs limit the stable step
 // (docs/methods/springs.md 2).
 #pragma once
 
@@ -10,8 +10,8 @@
 namespace skerry {
 
 SpringInputs springs_of(const Model& model);
-/// Computes SpringTable::first_mass and second_mass: for each anchor of a spring its inverse mass, and the number of
-/// dampers that share this mass.
+/// Computes SpringTable::first_mass and second_mass: for the two anchors of each spring, the inverse mass, and how many
+/// dampers share this mass.
 void weigh_springs(Model& model);
 /// See ForceElement::add_rate and ForceElement::bound_damping.
 void add_spring_rates(Model& model, std::span<Real> of_body);

@@ -1,4 +1,4 @@
-// Plastic flow of the elements of a world.
+// Plastic flow of elements, and its reset.
 #include <algorithm>
 
 #include "engine/world/kernels.h"

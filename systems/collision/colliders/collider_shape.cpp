@@ -35,11 +35,11 @@ Vec3 rim_direction(Index point, const Vec3& normal) {
     return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
 }
 
-/// Distance that a point can move while it stays in the flat region (flat_region) of one side of the shape [m].
-/// `beside`: distance of the point from the border of the side, measured along the side. `above`: height above the
-/// side. `thickness`: distance of the opposite side. The region is bounded by three kinds of planes: those
-/// perpendicular to the side through its border (distance `beside`), those at 45 degrees through its border, below
-/// which another side is nearer (distance (beside + above) / sqrt(2)), and the plane halfway to the opposite side.
+/// Distance that a point can move within the flat region (flat_region) of one side of the shape [m]. It is the least
+/// distance from the planes that bound the region. `beside`: distance from the planes perpendicular to the side through
+/// its border. (beside + above) / sqrt(2): distance from the planes at 45 degrees through the border, below which
+/// another side is nearer. above + thickness / 2: distance from the plane halfway to the opposite side. `above`: height
+/// of the point above the side. `thickness`: distance between the side and the opposite side.
 Real within_side(Real beside, Real above, Real thickness) {
     return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
 }

@@ -14,8 +14,8 @@ namespace {
 // of an edge, such a derivative changes the distance by 1 % of the default contact distance (0.02 edge lengths).
 constexpr Real flat_slope = 2e-4;
 
-// Limit of the magnitude of the derivative of the distance along the edge. A part of the edge where the derivative is
-// larger is too far from the collider to touch unless the edge rotates first. It gets no contact point.
+// Upper limit of the magnitude of the derivative of the distance along the edge at a contact point. Where the
+// derivative is larger, the edge rises so steeply from the collider that it can touch only after it has rotated.
 constexpr Real steep_slope = 0.05;
 
 // Accuracy of the parameter of a minimum or of an end of a flat stretch (0 to 1 along the edge).
@@ -70,12 +70,14 @@ public:
             for (const Real side : {-geometry_.size[i], geometry_.size[i]}) visit((side - a_[i]) / edge_[i]);
     }
 
-    /// Parameter s at which the derivative of the distance has the value `slope`, in closed form. For a box, the
-    /// formula is valid as long as the nearest corner, edge or side of the box is the same as at s = `near`. Outside of
-    /// the shape, the distance from the centre of the sphere or from the nearest feature of the box is f(s) = sqrt(q^2
-    /// (s - s0)^2 + f0^2), with q = |along|, the least value f0, and its parameter s0. The equation q^2 (s - s0) /
-    /// (length f) = slope has the solution s = s0 + r f0 / (q sqrt(q^2 - r^2)) with r = slope length. The result is NaN
-    /// if there is no solution, or for other shapes.
+    /// Parameter s at which the derivative of the distance with respect to the arc length has the value `slope`, in
+    /// closed form. For a box, the formula is valid as long as the nearest corner, edge or side of the box is the same
+    /// as at s = `near`. The result is NaN if there is no solution, or for other shapes than sphere and box.
+    ///
+    /// Outside of the shape, the distance from the centre of the sphere or from the nearest feature of the box is f(s)
+    /// = sqrt(q^2 (s - s0)^2 + f0^2). Here q = |along|, and f0 is the least value of f, at the parameter s0. With r =
+    /// slope length, the equation q^2 (s - s0) / (length f) = slope has the solution s = s0 + r f0 / (q sqrt(q^2 -
+    /// r^2)).
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
@@ -158,8 +160,8 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the contact points in an interval in which the derivative of the distance increases: the minimum, or both ends
-/// of a flat stretch; also the points beyond which the distance rises steeply (edge_contact.h).
+/// Finds the contact points in an interval in which the derivative of the distance increases. These are the minimum or
+/// both ends of a flat stretch, and the points beyond which the distance rises steeply (edge_contact.h).
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -237,8 +239,9 @@ private:
     EdgeContact& contact_;
 };
 
-/// Calls visit(low, high) for each interval in which the derivative passes one of the values -steep_slope, -flat_slope,
-/// flat_slope or steep_slope. Returns a lower bound of the distance between the edge and the part (edge_distance).
+/// Divides the edge into intervals of the parameter. Calls visit(low, high) for each interval in which the derivative
+/// of the distance passes one of the values -steep_slope, -flat_slope, flat_slope or steep_slope. Returns a lower bound
+/// of the distance between the edge and the part (edge_distance).
 Real scan(const Along& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
     Real nearest = infinity, low = 0;
@@ -248,8 +251,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
         // Lower bound of the distance in the interval. For a convex part it follows from the tangents at both ends. For
-        // other parts it is (d0 + d1 - length) / 2 with the distances d0 and d1 at the ends, because the distance
-        // changes by at most the length of the way along the edge.
+        // other parts it is (d0 + d1 - length) / 2 with the distances d0 and d1 at the ends, because over a length l of
+        // the edge, the distance changes by at most l.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

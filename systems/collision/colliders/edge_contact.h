@@ -33,9 +33,9 @@ struct EdgeContact {
 /// minimum. `a`, `b`: ends of the edge in the frame of the collider.
 ///
 /// If the distance is nearly constant on a stretch of the edge, for example along a side of a box, both ends of this
-/// stretch are found instead of the minimum. The points beyond which the distance rises steeply (steep_slope) are
-/// found, too: an edge that extends beyond a side is thus supported at the border of the side before it rotates about
-/// the border.
+/// stretch are found instead of the minimum. Also found are the points beyond which the distance rises steeply
+/// (steep_slope). Example: an edge extends beyond a side of a box. The contact at the border of the side then supports
+/// the edge before it rotates about the border.
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
 }  // namespace skerry

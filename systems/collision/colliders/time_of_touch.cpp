@@ -24,9 +24,8 @@ Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3
 }
 
 /// Nearest points of an edge and a convex collider part. The distance along the edge is a convex function, so it is
-/// least where its derivative changes sign; bisection finds this point. The normal at the point found is accurate,
-/// because the gradient of the distance is continuous outside of the part, and only positions outside of it are
-/// searched.
+/// least where its derivative changes sign; bisection finds this point. If the point is outside of the part, its normal
+/// is accurate, because the gradient of the distance is continuous there.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -64,8 +63,8 @@ public:
     }
 
     /// Lower bound of the distance between the wall and the stretch of the edge between the parameters `low` and `high`
-    /// [m]. It follows from the two intervals that contain the heights and the distances from the axis of all points of
-    /// the stretch.
+    /// [m]. It follows from two intervals: one contains the heights of all points of the stretch, the other contains
+    /// their distances from the axis.
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_max = std::max(r_low, r_high),
                    r_min = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -85,9 +84,9 @@ private:
 };
 
 /// Nearest points of an edge and the wall of a bucket, found by branch and bound, because the distance may have several
-/// minima. The returned distance is a lower bound of the least distance. It is at least half of the distance at the
-/// returned point, or a quarter if the search reaches its limit of samples. All distances are reduced by `threshold`
-/// [m].
+/// minima. The returned distance is a lower bound of the least distance, and at least half of the distance at the
+/// returned point. If the search reaches its limit of samples, it is at least a quarter of the distance at the returned
+/// point, but not always a lower bound. All distances are reduced by `threshold` [m].
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real threshold) {
     constexpr int max_samples = 1024;
     const Wall wall(geometry, end);
@@ -133,10 +132,10 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
     return nearest;
 }
 
-/// Nearest points of a face and the disc inside a rim. The interior of a face is first touched by the rim point that
-/// reaches furthest towards the face; both sides of the face are tested, because the rim may be on either side. If the
-/// projection of this point lies beside the face, an edge of the face is nearest. The returned distance is then a lower
-/// bound, and `in_face` is false.
+/// Nearest points of a face and the disc inside a rim. The rim point that reaches furthest towards the face is the
+/// first to touch the interior of the face. Both sides of the face are tested, because the rim may be on either side.
+/// If the projection of the rim point lies beside the face, an edge of the face is nearest. The returned distance is
+/// then a lower bound, and `in_face` is false.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
@@ -185,8 +184,10 @@ public:
     }
 
     /// Upper bound of the speeds of all nodes of the feature relative to the collider during the whole step [m per
-    /// step]. A node has the velocity drift - turn x arm. The first summand is its norm at the start; the second bounds
-    /// the growth of this norm, because the arm changes by at most drift during the step.
+    /// step]. A node has the velocity drift - turn x arm, with its displacement relative to the collider (drift), the
+    /// rotation vector of the collider (turn) and the vector from the collider's origin to the node (arm). In the code,
+    /// the first summand is the norm at the start. The second bounds its growth, because the arm changes by at most
+    /// drift during the step.
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)

@@ -41,9 +41,9 @@ struct Touch {
 };
 
 /// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider.
-/// For a face and the first point of a rim (collider_point), all points of the rim are considered; if the rim has
-/// passed through the face, the distance of the rim from the edges of the face is returned. Distances of nodes and
-/// edges are signed and reduced by `threshold.distance`. The distance from a face is positive on both of its sides.
+/// For a face and the first point of a rim (collider_point), all points of the rim are considered. If the rim has
+/// already passed through the face, the distance of the rim from the edges of the face is returned. Distances of nodes
+/// and edges are signed and reduced by `threshold.distance`. The distance from a face is positive on both of its sides.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
 /// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, and the feature

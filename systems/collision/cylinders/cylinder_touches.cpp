@@ -17,7 +17,7 @@ namespace {
 
 // If the angle between an end of the cylinder and a flat side of another shape is below this value [rad], eight points
 // fixed to the cylinder support the end (RimPoints). The direction of such a small tilt is only noise; points that
-// follow it would jump along the rim while the cylinder stands at rest.
+// depend on it would jump along the rim while the cylinder stands at rest.
 constexpr Real standing_tilt = 1e-4;
 // If the sine of the angle between an end of the cylinder and a flat side of another shape exceeds this limit, only one
 // point of the rim of this end can touch the side.
@@ -32,7 +32,7 @@ constexpr Real gradient_rounding = 1e-9;
 // Tolerance at the border of a flat side, as a fraction of the size of the side. Points that rounding errors put beside
 // a side thus count as above the side.
 constexpr Real over_fraction = 1e-9;
-// The distance along a rim counts as constant if its derivative is below this limit.
+// The distance along a rim counts as constant at a point if the magnitude of its derivative is at most this value.
 constexpr Real level_slope = 1e-9;
 // Number of samples on a rim. Minima are searched between adjacent samples.
 constexpr int samples_around = 16;
@@ -250,8 +250,8 @@ private:
     }
 
     /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. If this side is a
-    /// disc, adds also the points at which the rim of the cylinder next to the side crosses the outer border of the
-    /// disc in the projection along the normal.
+    /// disc, also adds points of the cylinder rim next to the side: those at which this rim, projected along the
+    /// normal, crosses the outer border of the disc.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = pose_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -283,8 +283,8 @@ private:
             });
     }
 
-    /// Called if the other shape is a cylinder, too: adds those of its rim points (RimPoints) that are above an end of
-    /// this cylinder.
+    /// Called if the other shape is a cylinder, too: adds those rim points (RimPoints) of the other cylinder that are
+    /// above an end of this cylinder.
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
         // Normal of the end in the frame of the other cylinder.
@@ -355,8 +355,8 @@ private:
     }
 
     /// Adds the contact point between the curved side of the cylinder and a curved side of the other shape, if the
-    /// nearest points of the two axes lie between their ends. `radius`: radius of the other curved side. `low`, `high`:
-    /// z coordinates of the ends of its axis. For parallel axes, the rims make the contacts.
+    /// nearest points of the two axes lie between the ends of the axes. `radius`: radius of the other curved side.
+    /// `low`, `high`: z coordinates of the ends of the other axis. For parallel axes, the rims make the contacts.
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =

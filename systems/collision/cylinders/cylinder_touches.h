@@ -47,8 +47,8 @@ private:
 ///
 /// A contact assumes that its point moves on a straight path within a step. If a tilted cylinder rotates about its axis
 /// by less than a radian in the step, the straight paths of these four points come no nearer to the side than the
-/// nearest of them is at the start. Points at other angles could come nearer on such a path, and would cause false
-/// contacts.
+/// nearest of the four points is at the start. Points at other angles could come nearer on such a path, and would cause
+/// false contacts.
 struct RimPoints {
     static constexpr Index max_per_rim = 9;
     struct Point {
@@ -63,8 +63,8 @@ struct RimPoints {
     const Point* end() const { return point.data() + count; }
 };
 
-/// Part of the cylinder surface nearest to a point. nearest_region determines the part from the gradient of the
-/// distance from the cylinder at this point.
+/// Part of the cylinder surface nearest to a point. nearest_region determines it from the gradient, at this point, of
+/// the distance from the cylinder.
 enum class CylinderRegion : std::uint8_t { end, side, rim };
 CylinderRegion nearest_region(const Vec3& gradient);
 
@@ -89,8 +89,8 @@ Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 /// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]. It is the
 /// greatest of several bounds: the distance of the other shape from the bounding sphere of the cylinder; for two
 /// cylinders, the distance between the capsules around them; the distances between parallel support planes of the two
-/// shapes. The normals of these planes are the axes of both shapes and the normals of `touches`. `pose`: pose of the
-/// other shape in the frame of the cylinder.
+/// shapes, with the axes of both shapes and the normals of `touches` as normals. `pose`: pose of the other shape in the
+/// frame of the cylinder.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                           const RigidMotion& pose, const CylinderTouches& touches);
 

@@ -15,7 +15,7 @@ namespace skerry {
 struct RigidCylinder {
     ColliderGeometry geometry;
     RigidMotion motion;
-    Index middle;  // row of the node at its centre in NodeTable
+    Index middle;  // row in NodeTable of the node at the centre of the cylinder
 
     Vec3 local(const Vec3& point) const { return to_local(motion, point); }
     Vec3 world(const Vec3& point) const { return to_world(motion, point); }
@@ -34,7 +34,7 @@ inline bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, 
 RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
 
 /// The cylinder at the start of the step, with the constant velocities that move it to its position at the end of the
-/// step. The angular velocity describes the smallest rotation that turns the axis to its final direction. The rotation
+/// step. The angular velocity belongs to the smallest rotation that turns the axis to its final direction. The rotation
 /// about the axis is left out, because it does not change the surface.
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
 

@@ -24,7 +24,7 @@ struct PairOwners {
 
     /// True if a pair of two bodies that can move belongs to the rank of the second body. The rank of the body with the
     /// higher slot gets the pair if the sum of the slots is odd, else the rank of the other body. The owner is thus
-    /// independent of the order of the bodies, and each of two ranks gets about half of the pairs of their bodies.
+    /// independent of the order of the bodies, and each of two ranks gets about half of the pairs between their bodies.
     static constexpr bool belongs_to_second(std::uint32_t first_slot, std::uint32_t second_slot) {
         return (first_slot + second_slot) % 2 == (first_slot < second_slot);
     }

@@ -23,7 +23,8 @@ inline std::uint64_t collider_pair_key(std::uint32_t body_slot, std::uint32_t co
     return std::uint64_t{1} << 62 | std::uint64_t{body_slot} << local_bits | collider_slot;
 }
 
-/// Handle slots in the key of a pair. `first` is the slot of a body, `second` the slot of a body or collider.
+/// The two handle slots that a pair key contains. `first` is the slot of a body, `second` the slot of a body or
+/// collider.
 struct PairSlots {
     std::uint32_t first, second;
     bool is_collider;
@@ -83,8 +84,8 @@ inline Index second_local(std::uint64_t feature) {
     return static_cast<Index>(feature & local_mask);
 }
 
-/// Upper part of the feature key of a point and a triangle; it identifies the point. Keys with equal upper parts differ
-/// only in the triangle.
+/// Upper part of the feature key of a point and a triangle, which identifies the point: all keys of one point with
+/// different triangles have the same upper part.
 inline std::uint64_t point_of_feature(std::uint64_t feature) {
     return feature >> local_bits;
 }

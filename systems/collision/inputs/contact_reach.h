@@ -7,10 +7,10 @@
 //             BodyTable) and of the path of one frame relative to the other. For a body and a collider it is the sum of
 //             the travel of the body, the path of the body's frame and the travel of the collider.
 //   d0        sum of BodyTable::displacement of both partners at time 0, when D(0) was measured; 0 for a collider
-//   T0        travel from which bounds are counted, T0 = T(0) - 2 d0 (pair_travel_base). The displacement of a body is
-//             the greatest distance d of a node from its origin, and the travel is the sum of the changes of d. A node
-//             can move by 2 d to the opposite side of its origin without changing d.
-//   F         front, F = T(t) plus a bound of the decrease of D(t) in this step (PairTable::travel_bound)
+//   T0        T0 = T(0) - 2 d0 (pair_travel_base), so T - T0 is the travel since time 0 plus 2 d0. The term 2 d0 is
+//             needed, because the travel of a body is the sum of the changes of its displacement d, the greatest
+//             distance of a node from its origin. A node can move by 2 d to the other side of its origin while d stays.
+//   F         front, F = T(t) plus an upper bound of the decrease of D in this step (PairTable::travel_bound)
 //   zone, m   zone: distance below which features are tested in each step (PairScale); m: margin of a list
 //
 // 1. Motion:      D(t) >= D(0) - (T(t) - T0). Common motion of both partners does not count (measure_displacement.h).
@@ -26,8 +26,8 @@
 //                 single body b satisfies F_b < T_b(0) - 2 d_b(0) + m_b = body_valid_until. The travel T_b of the body
 //                 and d_b are defined like T and d0; T_b includes the path of the body's frame.
 //
-// F includes the step that begins, so that the lists need no further margin for this step. Travels are sums of rounded
-// numbers. The constant part of reach exceeds their rounding errors by many orders of magnitude.
+// F includes the step that begins, so that the lists need no further margin for this step. Rounding errors of the
+// travels, which are sums, need no margin either: the constant part of reach is larger by many orders of magnitude.
 #pragma once
 
 #include <algorithm>
@@ -43,16 +43,17 @@ namespace skerry {
 // make surfaces cross are detected by find_crossings.
 inline constexpr Real speed_safety = 2.0;
 
-// Features are not tested for a crossing in the step if the bound of their approach is below this fraction of their
-// distance. The fraction 1 would suffice without rounding errors.
+// Features are not tested for a crossing in the step if the upper bound of their approach is at most this fraction of
+// their distance. The fraction 1 would suffice without rounding errors.
 inline constexpr Real slow_fraction = 0.5;
 
-// Two features with a gap below this fraction of the contact distance get a contact even if they do not approach. The
-// contacts of a resting pile therefore persist while the pile vibrates.
+// Two features with a gap below this fraction of the contact distance get a contact even if they do not approach each
+// other. The contacts of a resting pile therefore persist while the pile vibrates.
 inline constexpr Real touching_fraction = 0.1;
 
-/// Largest gap that can close within a step of length h [m]. Gravity can change the speed of each partner by gravity *
-/// h. T is one relative speed or a vector of eight speeds.
+/// Largest gap that can close within a step of length h [m]. The term 2 gravity h bounds the change of the relative
+/// speed, because gravity can change the speed of each partner by gravity h. T is Real, or a vector type for several
+/// relative speeds at once.
 template <class T>
 T reach(Real h, const T& relative_speed, Real gravity, Real contact_distance) {
     return speed_safety * h * (relative_speed + 2 * gravity * h) + touching_fraction * contact_distance;
@@ -67,8 +68,8 @@ struct PairScale {
     // Largest depth behind an edge or vertex at which a point is still pushed out. Also: largest distance of two edges
     // that have passed each other and are still pushed back.
     Real edge_depth;
-    // Features whose distance is below this value, in front of or behind a surface, are tested in each step. For points
-    // of a collider see face_zone.
+    // Features are tested in each step while their distance, in front of or behind a surface, is below this value. For
+    // points of a collider see face_zone.
     Real zone;
     // Sum of the radii of the round bodies in the pair; the features of a round body are its core (centre or axis).
     Real radii = 0;
@@ -88,8 +89,8 @@ inline Real face_zone(const PairScale& scale) {
 
 /// Distance that must remain between the cores (centres or axes) of round bodies during the motion of a step: the sum
 /// of their radii. The bodies count as in contact if the gap between their surfaces is below contact_slack times the
-/// shell distance. If the shell distance is zero, surfaces in contact may overlap by rounding errors. Then no distance
-/// is kept, so only crossings of the cores are found.
+/// shell distance. With zero shell distance, surfaces in contact may overlap by rounding errors. The required distance
+/// is then zero, so only crossings of the cores are found.
 inline ContactThreshold threshold_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? ContactThreshold{scale.radii, contact_slack * scale.shell}
                                               : ContactThreshold{};
@@ -97,9 +98,9 @@ inline ContactThreshold threshold_of_radii(const PairScale& scale) {
 
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second);
 
-/// True if neither partner of a pair can have passed through the other. This is the case if contacts act on both sides
-/// of the surfaces and find_crossings prevents crossings. With zero contact distance the result is false, because
-/// touching surfaces may overlap by rounding errors.
+/// True if the surfaces of a pair cannot have passed through each other: they were apart at the last search, and
+/// find_crossings has prevented crossings since then. With zero contact distance the result is false, because touching
+/// surfaces may overlap by rounding errors.
 inline bool is_held_apart(const CollisionSettings& settings, PairState state, const PairScale& scale) {
     return settings.continuous && state == PairState::apart && scale.contact_distance > 0;
 }
@@ -136,8 +137,8 @@ inline Real pair_displacement(const CollisionInputs& inputs, PairKind kind, Inde
     return inputs.body.displacement[first] + (kind == PairKind::collider ? 0 : inputs.body.displacement[second]);
 }
 
-/// Travel T0 from which bounds are counted [m]: if the distance d between two features of the pair is measured now, the
-/// features cannot meet as long as travel_bound is below T0 + d.
+/// The travel T0 defined at the top of this file [m]: if the distance d between two features of the pair is measured
+/// now, the features cannot meet as long as PairTable::travel_bound is below T0 + d.
 inline Real pair_travel_base(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
     return pairs.travel[p] - 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]);
 }

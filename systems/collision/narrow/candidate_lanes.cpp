@@ -10,8 +10,8 @@ namespace {
 
 using NodeLanes = std::array<Index, candidate_lanes>;
 
-/// Positions of the nodes of one register-wide slice of the eight lanes [m]: lanes_of<KernelReal> lanes from lane part
-/// * lanes_of<KernelReal> on.
+/// Positions of as many nodes as a register has lanes: the nodes from index part * lanes_of<KernelReal> on [m]. Lane l
+/// of the result belongs to the l-th of these nodes.
 [[gnu::always_inline]] inline LaneVec3<KernelReal> gather(std::span<const Vec3> position, const NodeLanes& node,
                                                           std::size_t part) {
     const auto axis = [&]<std::size_t... l>(Index i, std::index_sequence<l...>) __attribute__((always_inline)) {

@@ -58,8 +58,9 @@ struct FlatDistance {
     Flat nearest;
 };
 
-/// Signed distance from the rectangle r0 <= r <= r1, z0 <= z <= z1. For a solid without a hole, r0 is -infinity. If
-/// several sides are equally near, an end face is preferred.
+/// Signed distance from the rectangle r0 <= r <= r1, z0 <= z <= z1, the profile of a solid of revolution. For a solid
+/// without a hole, r0 is -infinity. If several sides are equally near, the upper or lower side (an end face) is
+/// preferred.
 FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
     const bool top = p.z >= 0.5 * (z0 + z1);
     const bool outer = r0 == -infinity || p.r >= 0.5 * (r0 + r1);

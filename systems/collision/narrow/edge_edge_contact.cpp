@@ -10,20 +10,21 @@ namespace skerry {
 namespace {
 
 // An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Flat edges get no
-// contacts: only the nodes around them keep the contact distance, and two flat edges can come nearer to each other. The
-// difference is at most min_bend / 4 times the width of the faces, an eighth of the default contact distance (0.02 edge
-// lengths).
+// contacts: only the nodes around them keep the contact distance. Two flat edges can therefore come nearer to each
+// other than the contact distance, by at most min_bend / 4 times the width of the faces. This is an eighth of the
+// default contact distance (0.02 edge lengths).
 constexpr Real min_bend = 0.01;
 
 // Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad]
-// (docs/methods/collision.md 4.4). A second tolerance, `closing`, allows for rotations in this step. Without `closing`,
-// two edges could cross in a step in which a contact stops a point in front of them.
+// (docs/methods/collision.md 4.4). Wedge adds the tolerance `closing` for rotations within the step: if a contact stops
+// one end of an edge, the other end moves on, and the edge could cross another edge in the same step.
 //
-// The tolerance is needed for an edge that rests on a face F of another body. It crosses two edges A and B of F, and
-// both contact normals are exactly that of F, which is the limit of the range. If the bend of A is smaller than that of
-// B, the slack lets the resting edge sink further at A. The contact normal at B is then outside of the range, by about
-// 0.01 rad for edges of equal length. Without the tolerance the contact at B would be lost: the resting edge would fall
-// onto F, regain the contact and be pushed out, again and again.
+// border_angle is needed for an edge that rests on a face F of another body. It crosses two edges A and B of F, and
+// both contact normals are exactly that of F, which is the limit of the range. If the bend of A (the angle between the
+// normals of its faces) is smaller than that of B, the slack lets the resting edge sink further at A. The contact
+// normal at B is then outside of the range, by about 0.01 rad for edges of equal length. Without the tolerance the
+// contact at B would be lost: the resting edge would fall onto F, regain the contact and be pushed out, again and
+// again.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -39,11 +40,11 @@ Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& nod
     return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
 }
 
-/// The one or two faces at an edge.
+/// The one or two faces at an edge. They determine in which directions the edge can touch another edge.
 class Wedge {
 public:
-    /// `closing`: distance by which the two surfaces may approach in this step [m]; it is a tolerance of the tests.
-    /// `against_axis`: true if the edge is tested against the axis of a capsule.
+    /// `closing`: distance by which the two surfaces may approach in this step [m]; it is added to the tolerances of
+    /// the tests. `against_axis`: true if the edge is tested against the axis of a capsule.
     Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing, bool against_axis) {
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
@@ -68,17 +69,17 @@ public:
         into_[1] = across(along, position[opposite(second, ends)] - origin);
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
-        // `fall`: depth, below the plane of the first face, of the corner of the second face that is opposite to the
-        // edge [m].
+        // `fall`: height of the plane of the first face above that corner of the second face which is opposite to the
+        // edge [m]. It is positive at a convex edge.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
         if (against_axis) {  // the axis of a capsule may also rest on flat and slightly concave edges
             convex_ = fall > -min_bend * other_width - closing;
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // fall / other_width is the sine of the angle b between the normals of the two faces, so the slack hardly
-        // depends on the order of the faces: (2 min_bend - b) w1 w2 / (w1 + w2) / 2 with the widths w1, w2
-        // (docs/methods/collision.md 4.5).
+        // The slack is (2 min_bend - b) w1 w2 / (w1 + w2) / 2 with the angle b between the normals of the two faces and
+        // the widths w1, w2 of the faces (docs/methods/collision.md 4.5). Here b is replaced by its sine, fall /
+        // other_width, so the order of the faces hardly matters.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
@@ -92,9 +93,10 @@ public:
     bool convex() const { return is_axis_ || convex_; }
 
     /// Slack: distance by which another edge that crosses this edge at `fraction` of the length may come nearer than
-    /// the contact distance [m]. It decreases towards the ends of the edge, where the faces are narrower. An edge with
-    /// a bend below min_bend gets no contact, so another edge may already be that near. Without the slack, the gap
-    /// would be negative as soon as the bend reaches min_bend, and stacked blocks would vibrate for ever.
+    /// the contact distance [m]. It decreases towards the ends of the edge, where the faces are narrower. Reason: an
+    /// edge whose bend (angle between the normals of its faces) is below min_bend gets no contact, so another edge may
+    /// come nearer. Without the slack, the gap would be negative as soon as the bend reaches min_bend, and stacked
+    /// blocks would vibrate for ever.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
     /// True if a point in the given direction from the edge is nearer to the edge than to the two faces of the edge.
@@ -116,7 +118,7 @@ private:
     }
 
     std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
-    // for each face: largest scalar product of `into_` and a direction for which faces() can be true [m]
+    // for each face: upper limit of the scalar product of `into_` and a direction for which faces() is true [m]
     std::array<Real, 2> border_;
     Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;

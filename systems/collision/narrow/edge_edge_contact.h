@@ -13,7 +13,7 @@ namespace skerry {
 struct EdgeEdgeContact {
     bool touching = false;
     Real distance = 0;  // signed distance between the edges; negative if they have passed each other [m]
-    // Amount by which the distance of nearly flat edges may fall below the contact distance [m].
+    // Nearly flat edges may come nearer to each other than the contact distance by this amount [m].
     Real slack = 0;
     Vec3 normal;  // unit normal in the direction in which contacts push the first edge; valid if `touching`
     SegmentSegment closest;
@@ -24,8 +24,8 @@ struct EdgeEdgeContact {
 /// edge, and if the contact normal lies between the normals of the two faces of the edge. Otherwise a point and a face
 /// are nearer. Nearly flat edges get no contact, because contacts at the surface's vertices suffice. The axis of a
 /// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both `near` and
-/// scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, contacts of edges that have
-/// passed each other are found, too.
+/// scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, edges that have passed each
+/// other get a contact, too.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real near, Surfaces surfaces);
 

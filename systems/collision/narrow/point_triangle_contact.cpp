@@ -9,10 +9,10 @@ namespace skerry {
 
 namespace {
 
-// The region of points that are nearest to a feature (face, edge, vertex) borders on the regions of its neighbours. A
-// point within a tolerance of the border belongs to both features: a contact that is found twice does no harm, but a
-// contact that rounding errors lose does. The tolerance is tie_fraction times the distance of the point plus
-// tie_edge_fraction times the edge length.
+// The points that are nearest to a feature of a surface (face, edge, vertex) fill a region, which borders on the
+// regions of the neighbouring features. A point within a tolerance of the border belongs to both features: a contact
+// that is found twice does no harm, but a contact that is lost by rounding errors does. The tolerance is tie_fraction
+// times the distance of the point plus tie_edge_fraction times the edge length.
 constexpr Real tie_fraction = 1e-6;
 constexpr Real tie_edge_fraction = 1e-12;
 
@@ -99,8 +99,8 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
         contact.normal = q.offset / q.distance;
         return;
     }
-    // A point straight behind an edge may lie behind the middle of a flat surface that the edge divides, so the larger
-    // depth limit of a face applies.
+    // A point straight behind an edge may lie behind the middle of a flat surface that the edge divides into two faces.
+    // Therefore the larger depth limit, that of a face, applies.
     if (!outside && q.distance > (straight_behind ? q.scale.face_depth : q.scale.edge_depth)) return;
     contact.side = outside ? Side::outside : Side::behind;
     contact.distance = outside ? q.distance : -q.distance;
@@ -132,16 +132,16 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
     contact.sleep = distance - scale.edge_depth;  // edge_depth is at least the contact distance
     if (height < 0 && surfaces == Surfaces::may_overlap) {
-        // A point behind the plane of the face can move into the region behind the face where it becomes a contact:
-        // down to face_depth. `sleep` is limited by the distance from this region.
+        // A point behind the plane of the face becomes a contact as soon as it is straight behind the face, at a depth
+        // of at most face_depth. `sleep` must not exceed the distance of the point from this region behind the face.
         const Real below = std::max(Real(0), -height - scale.face_depth);
         contact.sleep = std::min(contact.sleep, std::sqrt(aside_squared + below * below));
     }
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
         const bool turned = height < 0 && surfaces == Surfaces::apart;
-        // If the surfaces are apart, contacts keep the core of a round body behind this face at the distance radii +
-        // shell. This distance may exceed face_depth, so the limit does not apply.
+        // If the surfaces are apart, the core of a round body that lies behind this face is kept there at the distance
+        // radii + shell. This distance may exceed face_depth, so the depth limit does not apply.
         if (height < -scale.face_depth && !(turned && scale.radii > 0)) return contact;
         contact.side = height >= 0 ? Side::outside : Side::behind;
         contact.distance = turned ? -height : height;
@@ -167,8 +167,8 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
-    // If the axis tilts by the small angle t, the vector from the vertex to its nearest point becomes offset + t *
-    // along. [low, high]: angles for which no face at the vertex is nearer to this point.
+    // If the axis tilts by the small angle t, the vector from the vertex to the nearest point p of the axis becomes
+    // offset + t * along. [low, high]: tilt angles t for which no face at the vertex is nearer to p than the vertex.
     const Vec3 along = q.distance * axis.normalized();
     Real low = -axis_tilt, high = axis_tilt;
     const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {

@@ -17,7 +17,8 @@ enum class Side : std::uint8_t {
 
 /// State of two surfaces. apart: the surfaces have not passed through each other. A point may still lie behind a
 /// triangle of a thin or folded body, or of an inverted element; then the point must stay behind this triangle.
-/// may_overlap: a point behind a triangle is pushed out to the front.
+/// may_overlap: the surfaces may have passed through each other, so a point behind a triangle is pushed out to the
+/// front.
 enum class Surfaces : std::uint8_t { apart, may_overlap };
 
 struct PointTriangleContact {
@@ -30,20 +31,21 @@ struct PointTriangleContact {
     Real sleep = 0;
 };
 
-/// Tests a point against the nearest feature of a triangle: its face, an edge or a vertex. If the distance exceeds both
-/// `near` and scale.zone, only `closest` and `sleep` are computed.
+/// Tests a point against the part of a triangle that is nearest to it: the face, an edge or a vertex. If the distance
+/// exceeds both `near` and scale.zone, only `closest` and `sleep` are computed.
 ///
 /// If an edge or vertex is nearest, only one triangle reports the contact: the triangle with the lowest row of all
 /// triangles at this edge or vertex, and only if none of them has a face nearer to the point. The normal is the normal
-/// of the face, or points from the edge or vertex to the point. If the point is too close to the edge or vertex, the
-/// normal is the mean of the normals of the adjacent faces. The core of a round body can be touched from all sides.
+/// of the face, or points from the edge or vertex to the point. If the point is too close to the edge or vertex for an
+/// accurate direction, the normal is the mean of the normals of the adjacent faces. The core of a round body can be
+/// touched from all sides.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
                                             const Vec3& point, Index triangle, const PairScale& scale, Real near,
                                             Surfaces surfaces);
 
 /// True if a vertex of a surface can touch a capsule or the curved side of a cylinder. Let p be the point of the axis
-/// that is nearest to the vertex. There must be a tilt of the axis by at most axis_tilt after which no face at the
-/// vertex is nearer to p than the vertex. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
+/// that is nearest to the vertex. The result is true if, after some tilt of the axis by at most axis_tilt, no face at
+/// the vertex is nearer to p than the vertex. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale);
 

@@ -131,8 +131,8 @@ private:
         overlap_.direction = (within ? -offset : offset) / length;
         overlap_.place = at + body.shift;
     }
-    /// Tests the first point of a rim, number `k`, against each face of the body: the rim point furthest behind the
-    /// plane of the face, if its projection is inside the face.
+    /// Tests a rim against each face of the body. Point k, the first point of the rim, is the rim point furthest behind
+    /// the plane of the face. It counts if its projection is inside the face.
     void add_rim(Index k) {
         for (const SolidTriangle& t : pair_.body.solid.surface) {
             const FaceContact face = face_contact(
@@ -160,7 +160,7 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
     Vec3 offset = to_surface(body.solid, point - body.shift);
     const Real length = offset.norm();
     // The body moves until its surface point nearest to `point` is beyond the far side of the collider. The direction
-    // is from that surface point to `point`.
+    // of this motion is from that surface point to `point`.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
                    length > 0 ? Vec3(-offset / length) : Vec3(Vec3::UnitZ()), point};
 }

@@ -50,9 +50,9 @@ void finish(Solid& solid) {
 }
 
 /// Side of the line from a to b on which a point lies, in the projection on the plane with x to the right and y up: 1
-/// is left, -1 is right. A point exactly on the line counts as shifted by an infinitesimal vector (e, e^2). It then
-/// lies on one side of the line from a to b, and on the other side of the line from b to a, so a ray through an edge
-/// hits exactly one of the two triangles.
+/// is left, -1 is right. A point exactly on the line counts as shifted by an infinitesimal vector (e, e^2), and thus
+/// lies on one of the two sides. The line from b to a gives the opposite side. A vertical ray through an edge therefore
+/// hits exactly one of the two triangles at the edge.
 int side_of(const Vec3& point, const Vec3& a, const Vec3& b) {
     const Real x = b.x() - a.x(), y = b.y() - a.y();
     const Real area = x * (point.y() - a.y()) - y * (point.x() - a.x());
@@ -68,7 +68,8 @@ int passage(const Solid& solid, const std::array<Index, 4>& triangle, const Vec3
     int side = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t next = (k + 1) % 3;
-        // The lower node comes first, so that the computation gives the same side for both triangles at an edge.
+        // The lower node comes first, so that both triangles at an edge compute the same number, but with opposite
+        // signs.
         const int own =
             triangle[k] < triangle[next] ? side_of(point, at(k), at(next)) : -side_of(point, at(next), at(k));
         if (side != 0 && own != side) return 0;

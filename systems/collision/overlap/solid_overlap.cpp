@@ -63,8 +63,8 @@ std::vector<SimplexPair> find_overlapping_pairs(const PlacedSolid& first, const 
     return found;
 }
 
-/// Returns for each direction the distance by which the first solid has to move along it to leave all simplices of the
-/// second solid that it overlaps now [m].
+/// For each direction: distance that the first solid has to move to leave all simplices of the second solid that it
+/// overlaps now [m].
 std::vector<Real> exit_distances(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                                  std::span<const Vec3> direction) {
     std::vector<Real> distance(direction.size(), 0);
@@ -169,8 +169,8 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
                     std::span<const SimplexPair> pairs) {
     const Directions directions = likely_directions(first, second, pairs);
     const std::vector<Real> distance = exit_distances(first, second, tolerance, directions.span());
-    // A cost must be smaller by more than rounding errors to replace an earlier one, so that the first of equal costs
-    // is used on every machine.
+    // A cost replaces an earlier one only if it is smaller by more than rounding errors. The first of equal costs is
+    // thus used on every machine.
     constexpr Real shorter = 1 - 1e-6;
     Vec3 best = Vec3::UnitZ();
     Real least = infinity;
@@ -183,8 +183,9 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
 }
 
 /// Distance by which the first solid has to move along `direction` until it overlaps no simplex of the second solid
-/// [m]. Each iteration moves it out of the simplices that it overlaps at its current position. If max_tries iterations
-/// do not suffice, the result is the distance that takes all points of the first solid past all points of the second.
+/// [m]. Each iteration moves the first solid out of the simplices that it overlaps at its current position. If
+/// max_tries iterations do not suffice, the result is the distance that takes all points of the first solid past all
+/// points of the second.
 Real exit_distance_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int max_tries = 16;
     Real moved = 0;
@@ -213,8 +214,8 @@ void pass_over(const PlacedSolid& first, const PlacedSolid& second, Overlap& ove
         }
 }
 
-/// True if `inner` is inside the closed surface `outer`. The simplices of the two must not overlap, so one point of
-/// `inner` suffices for the test.
+/// True if `inner` is inside the closed surface `outer`. Simplices of `inner` and `outer` must not overlap, so that one
+/// point of `inner` suffices for the test.
 bool is_within(const PlacedSolid& inner, const PlacedSolid& outer) {
     const Simplex any = inner.solid.at(0).moved(inner.shift - outer.shift);
     const Vec3 centre = (any.point[0] + any.point[1] + any.point[2] + any.point[3]) / 4;
@@ -250,7 +251,7 @@ std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid&
 
 std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface,
                                                   Real tolerance) {
-    std::vector<Vec3> outward(solid.solid.point.size(), Vec3::Zero());  // by point: sum of twice the area vectors [m^2]
+    std::vector<Vec3> outward(solid.solid.point.size(), Vec3::Zero());  // by point: sum of 2 * area * normal [m^2]
     for (const SolidTriangle& triangle : solid.solid.surface) {
         const auto at = [&](std::size_t k) { return solid.solid.point[static_cast<std::size_t>(triangle.node[k])]; };
         const Vec3 area = (at(1) - at(0)).cross(at(2) - at(0));

@@ -26,14 +26,14 @@ struct PlacedSolid {
 
 /// Overlap of two solids. The solids overlap if a simplex of the first and a simplex of the second overlap by more than
 /// `tolerance` [m], or if one solid is inside the closed surface of the other. If the two surfaces cross, `direction`
-/// is close to the direction of the shortest separating motion. If one solid contains the other, the motion takes all
-/// points of the first solid past all points of the second, and is the shortest of a few such motions.
+/// is close to the direction of the shortest separating motion. If one solid contains the other, the separating motion
+/// takes all points of the first solid past all points of the second; the shortest of a few such motions is used.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
-/// Finds a surface point of `solid` at a distance of at most `tolerance` [m] from the open `surface`, if the solid is
-/// behind the surface, so that the outward normal of the solid at the point and the normal of the triangle form an
-/// acute angle. Contacts cannot detect the side at so small a distance. The returned overlap moves the solid further
-/// back by twice the tolerance.
+/// Finds a surface point of `solid` that touches the open `surface` from behind. The distance of the point from a
+/// triangle of `surface` is at most `tolerance` [m], and the outward normal of the solid at the point forms an acute
+/// angle with the normal of the triangle. At so small a distance, contacts cannot tell on which side of the surface the
+/// solid is. The returned overlap moves the solid further back by twice the tolerance.
 std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
 
 }  // namespace skerry

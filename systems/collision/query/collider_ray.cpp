@@ -56,7 +56,7 @@ private:
         nearest_ = {t, normal};
     }
     /// Calls found(t) for each t with |origin + t direction| = radius. The solutions are computed relative to the point
-    /// of the ray nearest to the centre, so rays that start far away lose no accuracy to cancellation.
+    /// of the ray nearest to the centre. A ray that starts far away thus loses no accuracy by cancellation.
     static void roots(const Vec3& origin, const Vec3& direction, Real radius, auto&& found) {
         const Real squared = direction.squaredNorm();
         if (squared == 0) return;

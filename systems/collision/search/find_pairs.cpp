@@ -16,7 +16,7 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_block = 16;
-// The work for one block of this many rows, groups or pairs takes some microseconds.
+// Numbers of rows, groups or pairs that one task processes in some microseconds.
 constexpr std::size_t rows_per_block = 64, groups_per_block = 256, pairs_per_block = 256;
 
 bool is_movable(const BodyTable& body, Index b) {
@@ -40,7 +40,8 @@ Real mean_body_edge(const BodyTable& body) {
 }
 
 /// Computes the boxes and bounding spheres of the bodies, and the travel bound up to which they are valid
-/// (body_valid_until in contact_reach.h, 6).
+/// (body_valid_until in contact_reach.h, 6). `common_travel`: travel that a kinematic body may make before the next
+/// broad search [m].
 void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     Real common_travel, SearchState& search) {
     const BodyTable& body = inputs.body;
@@ -80,8 +81,8 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     for (std::size_t c = 0; c < collider.slot.size(); ++c) {
         const Index row = static_cast<Index>(c);
         memory.collider_extent[c] = collider_extent(inputs, row, memory.box.span().first(body_count));
-        // The reach of the collider is computed again instead of as the difference travel_bound - travel. The travel of
-        // a rotating shape grows without limit, so the difference would have a large rounding error.
+        // The motion of the collider in this step is computed again, although it is also part of travel_bound - travel.
+        // The travel of a rotating shape grows without limit, so this difference would have a large rounding error.
         memory.collider_margin[c] = collider_reach(inputs, row, memory.collider_extent[c], h) + common_travel;
         search.collider_valid_until[c] = collider.travel[c] + memory.collider_margin[c];
         memory.box[body_count + c] = collider_box(collider.geometry[c], collider.motion[c]);
@@ -190,7 +191,7 @@ private:
     }
 
     /// Adds a pair, unless another rank searches it or its partners may not collide. valid_until = -infinity marks the
-    /// candidate list as expired, so that the pair is searched in this step: only a search shows how far apart the
+    /// candidate list as expired. The pair is thus searched in this step, because only a search shows how far apart the
     /// partners are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
         const bool both_move = kind != PairKind::collider && is_movable(inputs_.body, second);
@@ -360,8 +361,8 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
-    // Travel that colliders and kinematic bodies may make before the next broad search. It is the travel that a
-    // deformable body may make whose mean edge is the average over all deformable bodies.
+    // Travel that colliders and kinematic bodies may make before the next broad search [m]. A deformable body may make
+    // half of broad_skin times its mean edge; here the average over the mean edges of all deformable bodies is used.
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);

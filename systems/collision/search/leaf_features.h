@@ -71,8 +71,8 @@ inline unsigned used_lanes(Index count, std::size_t group) {
     return left < leaf_lanes ? (1U << left) - 1 : (1U << leaf_lanes) - 1;
 }
 
-/// The vertices that the triangles of a leaf own. Each vertex is owned by one of its triangles, so that a search
-/// compares it once.
+/// The vertices that the triangles of a leaf own. Each vertex is owned by exactly one triangle of the surface, so that
+/// a search compares it once.
 struct LeafPoints {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
@@ -93,8 +93,8 @@ struct LeafPoints {
     unsigned used(std::size_t group) const { return used_lanes(list->point_count, group); }
 };
 
-/// The edges that the triangles of a leaf own. Each edge is owned by one of its triangles, so that a search compares it
-/// once.
+/// The edges that the triangles of a leaf own. Each edge is owned by exactly one triangle of the surface, so that a
+/// search compares it once.
 struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;

@@ -99,8 +99,8 @@ private:
     const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
     const Vec3& position(Index n) const { return inputs_.position[n]; }
 
-    /// Prefetches the data of a leaf, which is too scattered in memory to be in the cache. Leaves are prefetched when
-    /// they are found, and compared after several pairs of leaves have been found.
+    /// Prefetches the data of a leaf. Leaves are scattered in memory, so their data are rarely in the cache. They are
+    /// prefetched when they are found, and compared after several pairs of leaves have been found.
     void prefetch_leaf(Index a) const {
         // Average numbers of edges and points that eight triangles own.
         constexpr std::size_t owned_edges = 12, owned_points = 4;
@@ -134,9 +134,9 @@ private:
 
     void compare_leaves(Index a, Index b) {
         // The core of a sphere or cylinder is a point in this search. It is tested against the faces and axes of the
-        // other body. Nodes of the other body are not tested against it: the test of a face finds the case that one of
-        // its nodes is nearest, and a node inside a flat surface does not obstruct the sphere. For two spheres, only
-        // the first is tested against the second.
+        // other body, but nodes of the other body are not tested against it: the test of a face finds the case that a
+        // node of the face is nearest, and a node inside a flat surface does not obstruct the sphere. For two spheres,
+        // only the core of the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, first_.edges), &other = features_of(b, second_.edges);
@@ -250,8 +250,8 @@ private:
     }
 
     /// Adds the close candidates of the queue to found_, except features of one body whose distance in the rest shape
-    /// is below the contact distance. Each candidate needs no test while its features are farther apart than the zone
-    /// (PairScale).
+    /// is below the contact distance. A candidate sleeps (needs no test) while its features are farther apart than the
+    /// zone (PairScale).
     void flush_queue(FeaturePair kind) {
         Queue& queue = queue_[static_cast<std::size_t>(kind)];
         if (queue.count == 0) return;
@@ -300,7 +300,8 @@ private:
     const PairToSearch& pair_;
     std::span<const Aabb> box_;
     Column<FoundCandidate>& found_;
-    // Squared distances below which features are listed: a point and a triangle; two edges (never larger) [m^2].
+    // Squared distances below which features are listed [m^2]. radius_squared_: of a point and a triangle.
+    // edge_radius_squared_: of two edges; it is never larger than radius_squared_.
     Real radius_squared_, edge_radius_squared_;
     Real margin_;  // margin of the list for the present pair of leaves [m]
     // True for a sphere or a cylinder, whose core is a point in this search.

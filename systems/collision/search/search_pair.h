@@ -12,7 +12,9 @@ struct PairToSearch {
     Index first;
     Index second;
     PairScale scale;
-    Real travel_base;   // travel of the pair from which bounds are counted (pair_travel_base) [m]
+    // Features that are now at the distance d cannot meet while PairTable::travel_bound is below travel_base + d
+    // (pair_travel_base) [m].
+    Real travel_base;
     Real margin;        // features with a distance below scale.zone + margin are listed [m]
     Real min_distance;  // lower bound of the distance between the two bodies [m]
     // For a body paired with itself: the pairs of leaves to compare. LeafPair::spare is used in place of `margin`.
@@ -20,17 +22,17 @@ struct PairToSearch {
 };
 
 /// Lists the close features of a pair in feature order, each combination of two features once. For two bodies, these
-/// are points of either body with triangles of the other body, and edges with edges. They are found with two trees,
-/// whose boxes must be computed from the present positions. A body and a collider are searched by search_collider. If a
-/// body is paired with itself, only the features of leaf_pairs are compared; features that share a node, or whose
-/// distance in the rest shape is below the contact distance, are left out. Returns the travel of the pair up to which
-/// the list is complete (PairTable::travel_bound) [m].
+/// are points of either body with triangles of the other body, and edges with edges. They are found with the trees of
+/// the two bodies, whose boxes must be computed from the present positions. A body and a collider are searched by
+/// search_collider. If a body is paired with itself, only the features of leaf_pairs are compared; features that share
+/// a node, or whose distance in the rest shape is below the contact distance, are left out. Returns the travel of the
+/// pair up to which the list is complete (PairTable::travel_bound) [m].
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 
 /// Lists the nodes and edges of a body that are close to a part of a collider, and the faces that are close to a point
-/// of the collider. The list is in feature order. Edges and faces are listed only if their interior may touch. Returns
-/// the travel of the pair up to which the list is complete (PairTable::travel_bound) [m].
+/// of the collider (collider_point). The list is in feature order. Edges and faces are listed only if their interior
+/// may touch. Returns the travel of the pair up to which the list is complete (PairTable::travel_bound) [m].
 Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found);
 
 /// True if an edge of one surface passes through a triangle of the other surface. The boxes of both trees must be

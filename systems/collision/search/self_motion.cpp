@@ -75,7 +75,7 @@ void store_speeds(const SelfMotion& motion, SelfSearch& self) {
     fit(motion.inputs, motion.body, motion.inputs.velocity, self.speed_box);
 }
 
-/// Largest relative displacement U(root, root) of two nodes of the body since the last update [m].
+/// Upper bound U(root, root) of the relative displacement of two nodes of the body since the last update [m].
 Real greatest_motion(const SelfMotion& motion, const SelfSearch& self) {
     return farthest(self.moved_box[motion.root()], self.moved_box[motion.root()]);
 }
@@ -133,8 +133,8 @@ void find_leaves(const CollisionInputs& inputs, Index body, SelfSearch& self) {
     }
 }
 
-/// Finds pairs of leaves in a sorted list. It is remembered where in the list the pairs with a recent first leaf begin,
-/// because consecutive candidates have few different leaves.
+/// Finds pairs of leaves in a sorted list. Consecutive candidates have few different leaves. The class therefore
+/// stores, for recent first leaves, where in the list their pairs begin.
 class SortedLeafPairs {
 public:
     explicit SortedLeafPairs(std::span<const LeafPair> pairs) : pairs_(pairs) {}
@@ -148,7 +148,7 @@ public:
     }
 
 private:
-    /// Index in the list, `begin`, of the first pair whose first leaf is `first`.
+    /// Index `begin` in the list of the first pair whose first leaf is `first`.
     struct LeafRun {
         Index first = no_index;
         std::size_t begin = 0;

@@ -2,18 +2,19 @@
 // after which the features of a pair must be compared again.
 //
 // The travel of the body (contact_reach.h) bounds the motion of its fastest node. Features of one body that are close
-// to each other mostly move together, so the travel overestimates the change of their distance. A sharper bound uses
-// two leaves a, b of the tree. Let X_i be the position of mesh node i at an earlier time s, and u_i = x_i - Q X_i its
-// displacement since then, without a rotation Q of the whole body. Any rotation is permitted; rigid_displacement
-// computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i of a and j of b. Features f of a and
-// g of b satisfy
+// to each other mostly move together, so the travel overestimates the change of their distance D. A sharper bound uses
+// two leaves a, b of the tree. Let X_i and x_i be the positions of mesh node i at an earlier time s and at the time t.
+// Let u_i = x_i - Q X_i be its displacement without a rotation Q of the whole body. Any rotation is permitted;
+// rigid_displacement computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i of a and j of b.
+// Features f of a and g of b satisfy
 //
 //     D(t) >= D(s) - U(a, b).
 //
 // Reason: take the weights of the mesh nodes for the nearest points at time t. The points with these weights at time s
 // were at least D(s) apart, and the vector between them has changed by at most U(a, b), apart from the rotation. The
 // velocities give the bound R(a, b) >= reach (contact_reach.h) in the same way. Each pair of leaves has a spare
-// distance M(a, b): features of the pair that are not in the list satisfy D(s) >= zone + M(a, b).
+// distance M(a, b): features of the pair that are not in the list satisfy D(s) >= zone + M(a, b). So they stay outside
+// of the zone until U(a, b) exceeds M(a, b).
 //
 // 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t. No update is needed while
 //    U(root, root) + R(root, root) is below the smallest M.
@@ -43,8 +44,8 @@ inline constexpr Real steps_ahead = 4;
 // Pairs of leaves are listed up to this distance, as a multiple of the mean edge length. With a larger number the list
 // of pairs is longer, but valid for more steps.
 inline constexpr Real listed_edges = 1;
-// When some pairs are compared, all pairs are compared whose spare distance is at most this fraction of
-// SelfMotion::skin, because a search has a fixed cost.
+// A search has a fixed cost. So when it compares some pairs of leaves, it also compares all pairs whose spare distance
+// is at most this fraction of SelfMotion::skin.
 inline constexpr Real renewal_fraction = 0.5;
 
 /// Largest distance between a point in one box and a point in another box.
@@ -59,7 +60,7 @@ struct SelfMotion {
     PairScale scale;
     Real gravity;  // [m/s^2]
     Real h;        // [s]
-    Real skin;     // smallest spare distance m of a comparison [m]
+    Real skin;     // least spare distance m after a comparison [m]
 
     /// Row of BvhTable of the root of the body's tree.
     Index root() const { return inputs.body.bvh_nodes[body].begin; }
@@ -67,14 +68,15 @@ struct SelfMotion {
     Real reach_of(const SelfSearch& self, Index a, Index b) const {
         return reach(h, farthest(self.speed_box[a], self.speed_box[b]), gravity, scale.contact_distance);
     }
-    /// Spare distance max(m, k S, R) of a new comparison of two leaves [m].
+    /// Spare distance max(m, k S, R) of two leaves after a new comparison [m]: m is `skin`, k is steps_ahead, S is h
+    /// times the largest relative speed of their nodes, and R is reach_of.
     Real margin_of(const SelfSearch& self, Index a, Index b) const {
         const Real speed = farthest(self.speed_box[a], self.speed_box[b]);
         return std::max({skin, steps_ahead * h * speed, reach(h, speed, gravity, scale.contact_distance)});
     }
 };
 
-/// Motion of `body` relative to itself in a step of length `h` [s]. `state`: state of the pair of the body with itself.
+/// SelfMotion of `body` in a step of length `h` [s]. `state`: state of the pair of the body with itself.
 /// `longer_motion`: distance by which the skin is increased [m].
 inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionSettings& settings, PairState state,
                                  Index body, Real h, Real longer_motion = 0) {
@@ -87,9 +89,9 @@ inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionS
 void resize(const CollisionInputs& inputs, SelfSearch& self);
 
 /// If the candidate list is complete for the step that begins, returns a lower bound of the spare distances that are
-/// left [m], otherwise 0. The motion of all nodes since the last update is compared with the smallest spare distance
-/// first. If this does not suffice, the motion of each pair of leaves is subtracted from its spare distance, and the
-/// present positions are stored as positions of the last update.
+/// left [m], otherwise 0. First the largest relative motion of two nodes since the last update is compared with the
+/// smallest spare distance. If this test fails, the relative motion of each pair of leaves is subtracted from its spare
+/// distance, and the present positions are stored as positions of the last update.
 Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
 /// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new

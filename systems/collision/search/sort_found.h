@@ -11,9 +11,9 @@
 
 namespace skerry {
 
-/// Up to this number of candidates, each candidate is sorted by its rank among the candidates of one kind. The rank is
-/// the number of candidates with a lower key. A pair of bodies has some hundreds of candidates. Comparing all of them
-/// with each other, a register at a time, takes less time than the mispredicted branches of a usual sort.
+/// Greatest number of candidates that are sorted by counting (a pair of bodies has some hundreds). The place of a
+/// candidate is then the number of candidates of the same kind with a lower key. Each candidate is compared with all
+/// others, several at a time in a register. This takes less time than the mispredicted branches of a usual sort.
 inline constexpr std::size_t counted_at_most = 512;
 
 inline constexpr auto feature_before = [](const FoundCandidate& a, const FoundCandidate& b) {

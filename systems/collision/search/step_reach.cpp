@@ -30,8 +30,8 @@ BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& set
         in_frame = std::max(in_frame, surface_speed(inputs, body, inputs.body.frame[body].velocity));
         in_world = std::max(in_world, surface_speed(inputs, body, Vec3::Zero()));
     }
-    // The reach of a body serves its pairs with all partners, and a partner may be held in place. So the full gravity
-    // is used, although gravity does not change the relative velocity of two bodies that fall freely.
+    // The reach of a body is used for its pairs with all partners, and a partner may be held in place. So the full
+    // gravity is used, although gravity does not change the relative velocity of two bodies that fall freely.
     const auto reach_at = [&](Real speed) {
         return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);
     };

@@ -12,7 +12,7 @@ struct BodyReach {
 };
 
 /// Distance by which a body may close a gap in this step. To bound the closing distance of two bodies, add their
-/// `in_world`, or their `in_frame` and frame_reach(). The speed of the body is the greatest speed in the last step,
+/// `in_world`, or their `in_frame` and frame_reach(). The bound is computed from the greatest speed in the last step,
 /// which check_state has measured. If `measure` is true, the present velocities of the surface are taken into account,
 /// too, for example for a body that has not moved yet. They are always taken into account for a moving mesh collider,
 /// because its script may start the motion at any time.

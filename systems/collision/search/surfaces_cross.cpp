@@ -12,20 +12,22 @@ namespace skerry {
 
 namespace {
 
-// A crossing of two features of one body is not counted if their distance at rest was at most this multiple of the mean
-// edge (count_self_crossings). Such near features pass through each other where a few elements are crushed or inverted.
+// Two features of one body are not counted as crossing (count_self_crossings) if their distance at rest was at most
+// this multiple of the mean edge. Such near features pass through each other where a few elements are crushed or
+// inverted.
 constexpr Real own_piece_edges = 1;
 
 class CrossingSearch {
 public:
-    /// `own_piece`: features of one body that are at most this far apart at rest are left out [m].
+    /// `own_piece`: features of one body that are at most this far apart at rest belong to one piece of the body and
+    /// are left out [m].
     CrossingSearch(const CollisionInputs& inputs, PairKind kind, Index first, Index second, Real own_piece,
                    std::span<const Aabb> box)
         : inputs_(inputs), kind_(kind), first_(first), second_(second), own_piece_(own_piece), box_(box) {}
 
-    /// Calls visit(triangle, side) for each side of a triangle that passes through another triangle, until visit
-    /// returns true. Returns true if a call returned true. An edge that two triangles share is visited once for each of
-    /// them.
+    /// Calls visit(triangle, side) for each side of a triangle that passes through another triangle, until a call
+    /// returns true. Returns true if a call of visit returned true. An edge that two triangles share is visited once
+    /// for each of them.
     bool any(auto&& visit) const {
         const Range first = inputs_.body.bvh_nodes[first_], second = inputs_.body.bvh_nodes[second_];
         if (first.size() == 0 || second.size() == 0) return false;
@@ -76,9 +78,9 @@ private:
         return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, point, face) > own_piece_ * own_piece_;
     }
 
-    /// True if an edge pq that passes through a face of its own body counts as a crossing. Both ends must be far from
-    /// the face at rest, and must not lie in the plane of the face up to rounding errors, as in a flat side of the
-    /// body.
+    /// True if an edge pq that passes through a face of its own body counts as a crossing. Both ends must have been far
+    /// from the face at rest. Neither end may lie in the plane of the face up to rounding errors, because edges in a
+    /// flat side of the body do so without a crossing.
     bool counts_in_self(Index p, Index q, const std::array<Index, 3>& face) const {
         constexpr Real rounding = 1e-9;  // least height of an end above the plane, as a fraction of own_piece_
         const auto& x = inputs_.position;

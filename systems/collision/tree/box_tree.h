@@ -23,7 +23,8 @@ public:
     explicit BoxTree(std::span<const Aabb> boxes);
 
     /// Calls visit(item) for every item with touches(box of the item). If touches(box) is true for a box, it must also
-    /// be true for every larger box that contains it. The order of the calls depends only on the boxes.
+    /// be true for every larger box that contains it: the search skips a subtree if touches() is false for its box. The
+    /// order of the calls depends only on the boxes.
     template <class Touches, class Visit>
     void for_each(Touches&& touches, Visit&& visit) const {
         for (std::size_t row = 0; row < nodes_.size();) {

@@ -47,8 +47,8 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
     return boxes;
 }
 
-/// Squared distances of eight boxes, given by their lower and upper coordinates, from the box `to`, by lane; 0 for
-/// boxes that overlap `to` [m^2].
+/// Squared distances of eight boxes from the box `to`, by lane; 0 for boxes that overlap `to` [m^2]. `lower`, `upper`:
+/// lower and upper coordinates of the eight boxes.
 [[gnu::always_inline]] inline Parts<KernelReal> distance_squared(const std::array<Lanes<Real, leaf_lanes>, 3>& lower,
                                                                  const std::array<Lanes<Real, leaf_lanes>, 3>& upper,
                                                                  const Aabb& to) {

@@ -7,10 +7,11 @@
 
 namespace skerry {
 
-/// Visits pairs of leaves, one below node a of a tree and one below node b of another tree, until visit returns true.
-/// Returns true if a visit returned true. A pair of leaves is visited if near(c, d) is true for the two leaves and for
-/// all pairs of nodes c and d above them. `self`: a and b belong to the same tree, which is paired with itself; each
-/// node is then also paired with itself.
+/// Calls visit(c, d) for pairs of leaves, c below node a of one tree and d below node b of another tree, until a call
+/// returns true. Returns true if a call returned true. near(c, d): true if two tree nodes are close to each other. A
+/// pair of leaves is visited if near() is true for the two leaves and for all pairs of nodes that the descent from a
+/// and b to these leaves passes. `self`: a and b belong to the same tree, which is paired with itself; each node is
+/// then also paired with itself.
 template <class Near, class Visit>
 bool any_leaf_pair(std::span<const BvhNode> node, Index a, Index b, bool self, const Near& near, const Visit& visit) {
     if (!near(a, b)) return false;

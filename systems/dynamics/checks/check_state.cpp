@@ -88,7 +88,7 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real rate_squared = 0;  // squared deformation rate over the squared leeway (factor on max_strain_step) [1/s^2]
+    Real rate_squared = 0;  // squared deformation rate / squared leeway (factor on max_strain_step) [1/s^2]
     Index node = no_index;
     Index element = no_index;  // tetrahedron t: lane t % 8 of block t / 8
 
@@ -116,8 +116,9 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// For each tetrahedron of a block: |F'|^2 over the squared leeway (factor on max_strain_step) [1/s^2]; 0 in an unused
-/// lane. The rate of F is F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and rest positions X.
+/// For each tetrahedron of a block: |F'|^2 divided by the squared leeway [1/s^2]; 0 in an unused lane. The leeway is a
+/// factor on the allowed change of F. The rate of F is F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and
+/// rest positions X.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& difference) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -131,9 +132,9 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
-/// Squared deformation rates of the tetrahedra of a block, divided by the squared leeways (factors on max_strain_step)
-/// [1/s^2]. The deformation rate is the smaller of |F'|, the norm of the rate of F, and the relative speed of the
-/// corners over the smallest altitude.
+/// Squared deformation rates of the tetrahedra of a block, divided by the squared leeways (factors on the allowed
+/// change of F) [1/s^2]. The deformation rate is the smaller of two values: the norm |F'| of the rate of F, and the
+/// greatest speed of a corner relative to corner 0, divided by the smallest altitude.
 ///
 /// All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most blocks.
 /// `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
@@ -185,15 +186,16 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
-/// Greatest |F'|^2, with the rate F' of F, over the squared leeway (factor on max_strain_step) among the elements of a
-/// block [1/s^2]. It is 0 for inversion barriers, and if no node of the block is marked in `beside_fast`.
+/// Greatest |F'|^2 of the elements of a block, divided by their squared leeways (factors on the allowed change of F)
+/// [1/s^2]. F' is the rate of the deformation gradient F. Returns 0 for inversion barriers, and if `beside_fast` marks
+/// no node of the block: then all its tetrahedra are slow.
 Real check_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     // the limit applies to means of F over tetrahedra, but F of an inversion barrier is F of one tetrahedron
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];
-    // nonzero if a node of the block is marked in `beside_fast`. This test comes first, because the gradients take over
-    // half of the time of a block.
+    // Nonzero if a node of the block is marked in `beside_fast`. Marks are tested first, because computing the
+    // gradients takes more than half of the time of a block.
     unsigned marked = 0;
     for (Index k = 0; k < count; ++k)
         for (const Index n : state.element_node[first + static_cast<std::size_t>(k)].lane)
@@ -206,7 +208,7 @@ Real check_elements(const CheckInputs& state, std::size_t block, std::span<const
     return highest_lane(inner_product(change, change) / (leeway * leeway));
 }
 
-/// Finds the node that is fastest relative to the mean velocity of the body. This test is less accurate than
+/// Finds the node that is fastest relative to the mean velocity of the body. This speed is a less accurate test than
 /// deformation rates. It is used for bodies without a list of tetrahedra.
 Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude) {
     Vec3 sum = Vec3::Zero();
@@ -237,9 +239,10 @@ bool may_deform_faster(Executor& executor, const CheckInputs& state, std::size_t
     });
 }
 
-/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. F of an element is the
-/// mean over its tetrahedra. Cheap tests come first, and the function ends as soon as a test shows that no element
-/// exceeds `rate`. `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
+/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. F of an element is a
+/// mean over tetrahedra, so elements are tested only beside tetrahedra that exceed `rate`. Cheap tests come first, and
+/// the function ends as soon as a test shows that no element exceeds `rate`. `max_relative_speed`: upper bound on the
+/// relative speed of two nodes of the body [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate,
                       Real max_relative_speed, std::span<std::uint8_t> beside_fast) {
     if (!may_deform_faster(executor, state, body, rate)) return 0;

@@ -16,8 +16,9 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
-/// Deformation rate of an element, divided by its leeway (factor on max_strain_step). The deformation rate is the
-/// smaller of |F'|, the norm of the rate of F, and the relative speed of two corners of a tetrahedron over its
+/// Deformation rate of an element, divided by its leeway. The leeway is a factor on max_strain_step, the largest change
+/// of the deformation gradient F that a step may make. The deformation rate is the smaller of two values: the norm |F'|
+/// of the rate of F, and the greatest speed of a tetrahedron's corner relative to its corner 0, divided by its smallest
 /// altitude.
 struct StrainRate {
     Real rate = 0;          // rate of the fastest element; 0 if no element exceeds the given rate [1/s]
@@ -29,11 +30,11 @@ struct StepVerdict {
     StepFault fault = StepFault::none;
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, if one node causes the fault
-    // Size of the fault. For too_fast: norm of the change of F in this step, over the leeway (factor on
-    // max_strain_step). For too_far: spacing of floating-point coordinates over the mean edge. For too_stiff: longest
-    // stable step [s]. Not used for not_finite and unsolved.
+    // Size of the fault. For too_fast: norm of the change of F in this step, divided by the leeway of the tetrahedron.
+    // For too_far: spacing of floating-point coordinates, divided by the mean edge. For too_stiff: longest stable step
+    // [s]. Not used for not_finite and unsolved.
     Real value = 0;
-    Index tetrahedron = no_index;  // tetrahedron that causes the fault, if there is one: lane t % 8 of block t / 8
+    Index tetrahedron = no_index;  // tetrahedron t that causes the fault, if there is one: lane t % 8 of block t / 8
     StrainRate fastest = {};       // fastest element; not set if the fault is not_finite
 };
 
@@ -50,9 +51,9 @@ struct CheckInputs {
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
-    // Factor on max_strain_step; empty means 1 for all tetrahedra.
+    // leeway: factor on max_strain_step, the largest change of F that a step may make; empty means 1 for all tetrahedra
     std::span<const ElementLane> tetrahedron_leeway = {};
-    std::span<const Range> body_blocks = {};  // tetrahedra, from BodyTable; if empty, check_state tests node speeds
+    std::span<const Range> body_blocks = {};  // tetrahedra of each body; if empty, check_state tests node speeds
     // Elements: columns of BodyTable, ElementBlockTable and ElementNodeTable. If body_element_blocks is empty, the
     // tetrahedra are the elements.
     std::span<const Range> body_element_blocks = {};
@@ -109,25 +110,24 @@ struct SpeedOutputs {
     }
 };
 
-/// Leeway (factor on max_strain_step) of implicit elements and of the tetrahedra that these elements cover; the leeway
-/// of all others is 1. It is larger, because implicit elements make no step unstable.
+/// Leeway (factor on max_strain_step) of implicit elements and of the tetrahedra that these elements cover. All other
+/// elements have the leeway 1. Implicit elements may deform more in a step, because they make no step unstable.
 inline constexpr Real implicit_leeway = 5;
 
 /// Writes the greatest speeds, and returns the first fault in body order. A fault is a velocity that is not finite, or
 /// an element whose deformation gradient F would change too much in this step of length `h` [s]. Parallel over node
 /// blocks and bodies.
 ///
-/// The change of F (Frobenius norm) must not exceed `max_strain_step` times the leeway, a factor of the element. F of
-/// an element is a mean over tetrahedra. So an element is tested only if F of one of its tetrahedra changes too much,
-/// and a tetrahedron only if two of its corners move apart by more than the allowed change of F times its smallest
-/// altitude. The verdict names the tetrahedron that deforms fastest. Common motion of all nodes and slow rotation of a
-/// large body cause no fault.
-///
+/// The change of F (Frobenius norm) must not exceed `max_strain_step` times the leeway of the element. F of an element
+/// is a mean of F over tetrahedra, so it can change too much only if F of a tetrahedron does. An element is therefore
+/// tested only if one of its tetrahedra changes too much. A tetrahedron is tested only if two of its corners move apart
+/// by more than the allowed change of F times its smallest altitude. The verdict names the tetrahedron that deforms
+/// fastest. Common motion of all nodes and slow rotation of a large body cause no fault.
 /// Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the
 /// smallest altitude of the body. This test also rejects fast rotation of a large body.
 ///
-/// StepVerdict::fastest is set if an element deforms too fast for a step of length `h` or `longest` [s], the greatest
-/// length of the next step. `beside_fast`: work memory, one entry per node.
+/// StepVerdict::fastest is set if an element deforms too fast for a step of length `h` or `longest` [s]. `longest`:
+/// upper limit on the length of the next step. `beside_fast`: work memory, one entry per node.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 
@@ -135,9 +135,9 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
 /// two steps. The deformation rate of the result is 0 if no body deforms faster than `rate` [1/s].
 StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
-/// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. In a step, which
-/// lasts about as long as sound takes to cross an edge, motion slower than a millionth of the speed of sound would be
-/// lost to rounding if the spacing were coarser.
+/// Upper limit on the spacing of floating-point coordinates, as a fraction of the mean edge of a body. A step lasts
+/// about as long as sound takes to cross an edge. So at this spacing a node slower than a millionth of the speed of
+/// sound moves by less than the spacing in a step, and rounding can suppress its motion.
 inline constexpr Real coarsest_spacing = 1e-6;
 
 /// Finds the first body that is too far from the origin for its size. One node per body is tested, because the size of

@@ -14,15 +14,16 @@ namespace skerry {
 
 namespace {
 
-// Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
+// A large body is divided into parts of at most this number of blocks of tetrahedra. Several small bodies share a job,
+// up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
-// A block with narrow tetrahedra computes its width (the least width of a tetrahedron) only once in this number of
-// checks, because the width takes half of the time of a check.
+// For a block with narrow tetrahedra, the width (least distance of two parallel planes that enclose a tetrahedron) is
+// computed only once in this number of checks, because it takes half of the time of a check.
 constexpr std::uint8_t checks_at_narrow = 8;
 
-// Number of blocks whose travel budgets (distances that need no check) are compared together, without a branch for each
-// block.
+// Number of blocks whose travel budgets (distances that the body may move without a check) are compared together,
+// without a branch for each block.
 constexpr std::size_t blocks_at_once = 32;
 
 Real8 squared(const LaneVec3<Real8>& v) {
@@ -45,8 +46,8 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
 }
 
 /// Width of the narrowest tetrahedron of a block [m]. The width of a tetrahedron is the least distance of two parallel
-/// planes that enclose it: |determinant of the edges| / largest cross product. Inverted tetrahedra count, because they
-/// may become positive and invert again.
+/// planes that enclose it: |determinant of the edges| / largest cross product. Inverted tetrahedra are included,
+/// because they may become positive and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
     const Real8 unused = Real8{} + infinity;
@@ -62,9 +63,9 @@ struct Body {
     const InversionInputs& inputs;
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
-    Real travel_bound;  // upper bound on the travel (distance moved) of the body at the end of this step [m]
-    // Travel of the body from which a new travel budget (distance without a check) is counted, see
-    // measure_displacement.h [m]
+    Real travel_bound;  // upper bound on the travel of the body at the end of this step [m]
+    // Until the travel of the body exceeds travel_base + d, no node moves in the frame of the body by more than d from
+    // its present position (measure_displacement.h) [m].
     Real travel_base;
 
     Body(const InversionInputs& all_inputs, Real step, Index body)

@@ -16,7 +16,7 @@ namespace skerry {
 struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
-    std::span<const ElementLane> tetrahedron_leeway;   // factor on max_strain_step; empty: 1 for all
+    std::span<const ElementLane> tetrahedron_leeway;   // above 1 if an implicit element covers it; empty: 1
     std::span<const std::uint8_t> tetrahedron_sliver;  // empty if there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
@@ -49,8 +49,8 @@ struct Inversions {
     Index count = 0;
     Index body = no_index;         // body of the first inverted tetrahedron: row of BodyTable
     Index tetrahedron = no_index;  // first tetrahedron that the step inverts: lane t % 8 of block t / 8
-    // True if a body that had no inverted tetrahedron before the step gets one. Slivers and tetrahedra that implicit
-    // elements cover do not count.
+    // True if a body that had no inverted tetrahedron before the step gets one. Slivers (tetrahedra of negligible
+    // volume) and tetrahedra that implicit elements cover do not count.
     bool first = false;
 };
 
@@ -84,10 +84,10 @@ struct InversionBudgets {
 
 /// Finds the tetrahedra that a step of length `h` [s] inverts. Parallel over parts of bodies.
 ///
-/// A tetrahedron cannot invert before its corners have moved by half of its width, the least distance of two parallel
-/// planes that enclose it. So a tetrahedron is checked only after its body may have moved that far: narrow tetrahedra
-/// often, all others rarely. Each check of a block writes a travel budget, the distance that the body may move before
-/// the next check. For a block too narrow for a budget, only every eighth check computes a new one.
+/// A tetrahedron cannot invert until a corner has moved by half of the width of the tetrahedron, the least distance of
+/// two parallel planes that enclose it. So a tetrahedron is checked only after its body may have moved that far: narrow
+/// tetrahedra often, all others rarely. Each check of a block writes a travel budget, the distance that the body may
+/// move before the next check. For a block too narrow for a budget, only every eighth check computes a new one.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 

@@ -15,8 +15,8 @@ bool is_awake(const ReactionInputs& inputs, Index body) {
     return inputs.kind[b] == BodyKind::deformable && !inputs.asleep[b];
 }
 
-/// True for an awake body that is explicit or implicit. The nodes of such a body are held one by one; a rigid body is
-/// held as a whole (add_rigid_body).
+/// True for an awake body that is explicit or implicit. The reactions on such a body are measured node by node, those
+/// on a rigid body as a whole (add_rigid_body).
 bool counts(const ReactionInputs& inputs, Index body) {
     const auto b = static_cast<std::size_t>(body);
     return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
@@ -38,9 +38,9 @@ void add_axes(const ReactionInputs& inputs, const Vec3& moment_point, std::size_
     }
 }
 
-/// Adds the reaction on a held rigid body: the change of its momentum (inputs.kick) minus the impulses of weight, loads
-/// and contacts on its nodes. For a held implicit body, adds only the moment that holds its frame, because the
-/// reactions on its nodes are added one by one.
+/// Adds the reaction on a rigid body that attachment `a` holds: the change of the body's momentum (inputs.kick) minus
+/// the impulses of weight, loads and contacts on its nodes. For a held implicit body, adds only the moment that holds
+/// its frame, because the reactions on its nodes are added one by one.
 void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
@@ -67,8 +67,8 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
 
 /// Adds the impulses on held nodes that come from the added inertia of the implicit elements (docs/methods/clusters.md
 /// 1). Through this inertia a velocity change dv_k of a moving node k requires the additional impulse beta c V
-/// (g_k.g_n) dv_k on each held node n of the element, with the assumed modulus c, the volume V and the shape gradients
-/// g. Velocity changes by damping do not count.
+/// (g_k.g_n) dv_k on each held node n of the element. The element has the factor beta (inertia_of_stiffness()), the
+/// assumed modulus c, the volume V and the shape gradients g. Velocity changes by damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);
@@ -118,7 +118,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     Index last = no_index;
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
-        // A body is handled once, at its first attachment. Its other attachments need not follow directly.
+        // A body is handled once, at its first attachment. Its other attachments may stand anywhere later in the list.
         bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);

@@ -52,8 +52,8 @@ struct ReactionInputs {
     std::span<const Index> first, count;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
-    // Columns of RigidBodyTable, and for each body its rows in that table and in ImplicitNodeTable. For a held rigid
-    // body `kick` and `moment_kick` are the changes of its momentum and angular momentum.
+    // Columns of RigidBodyTable; for each body, its rows in RigidBodyTable and ImplicitNodeTable. For a rigid body that
+    // an attachment holds, `kick` and `moment_kick` are the changes of its momentum and angular momentum.
     std::span<const Range> body_rigid, body_implicit;  // BodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, kick, moment_kick, hold_moment;

@@ -57,16 +57,18 @@ struct WorkInputs {
 
 /// Sums impulse and work of the loads on all nodes, and of the forces that hold nodes with inverse mass 0. A holding
 /// force is the opposite of `force`. Nodes of sleeping bodies do not count, because the forces that hold them are
-/// unknown. Nodes of ghosts do not count either, because the owner counts them. Loads are summed over fixed groups of
-/// nodes, in a fixed order.
+/// unknown. Ghosts (copies of bodies of other ranks) do not count either, because their owners count them. Sums run
+/// over fixed groups of nodes, in a fixed order.
 ///
-/// A force F has the impulse kick F, with the force interval `kick` [s]. A constant force does the work h F .
-/// velocity_next, since h velocity_next is the displacement in symplectic Euler. If a force has changed by dF since the
-/// last step, its work on a free node is greater by lag dF . velocity, because each force acts over half of the
-/// previous step and half of this step. `lag`: half of the previous step [s]. With leapfrog `lag` is 0, and a free node
-/// moves by h (velocity + velocity_next) / 2 while the forces act. The part of a holding force that balances weight and
-/// loads does work over the step length `h` [s], the part that balances element forces over `kick`. For an implicit
-/// body both parts act over `kick`, because strain_implicit_bodies has scaled its `force` to this time.
+/// Work and impulse of a force F on a node follow from three times: the step length `h`, the force interval `kick`, and
+/// `lag`, half of the previous step, which is 0 with leapfrog [s].
+/// - Impulse: kick F.
+/// - Constant load: the work is h F . velocity_next, because h velocity_next is the displacement in symplectic Euler.
+/// - Load on a free node that has changed by dF since the last step: the work is greater by lag dF . velocity, because
+/// each force acts over half of the previous step and half of this step.
+/// - Load on a free node with leapfrog: its displacement is h (velocity + velocity_next) / 2.
+/// - Holding force: the part that balances weight and loads does work over h, the part that balances element forces
+/// over `kick`. For an implicit body both parts act over `kick`, to which strain_implicit_bodies has scaled `force`.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

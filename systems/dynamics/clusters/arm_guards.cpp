@@ -10,8 +10,9 @@ namespace skerry {
 
 namespace {
 
-// Assumed modulus that an inversion barrier (guard) gets when it is activated, divided by its stiffness k
-// (docs/methods/elasticity.md 7.7). It is so small that the added inertia is negligible until the guard is compressed.
+// Assumed modulus (stiffness that the implicit integration assumes) of a newly activated inversion barrier (guard),
+// divided by the stiffness k of the barrier (docs/methods/elasticity.md 7.7). It is so small that the added inertia is
+// negligible until the guard is compressed.
 constexpr Real modulus_at_rest = 0.01;
 
 /// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.

@@ -12,8 +12,9 @@ struct GuardOutputs {
     std::span<ElementLane> modulus, volume;  // assumed modulus [Pa], volume [m^3]; 0 for an inactive guard
 };
 
-/// Activates the guard (inversion barrier) of every tetrahedron whose moving corners all belong to one cluster. Guards
-/// themselves do not form clusters. An active guard gets the volume of its tetrahedron and an assumed modulus;
+/// Activates the guard (inversion barrier) of every tetrahedron whose moving corners all belong to one cluster. A
+/// cluster is a set of moving nodes that implicit elements connect; guards themselves connect no nodes. An active guard
+/// gets the volume of its tetrahedron and an assumed modulus, the stiffness that the implicit integration assumes.
 /// stiffen_clusters raises this modulus when the guard is compressed. Other guards get volume 0 and modulus 0. The
 /// assumed modulus of an already active guard does not decrease. Sequential; allocates.
 void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Real> inverse_mass,

@@ -90,8 +90,8 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
         const std::size_t begin = clusters.inverse.size();
         clusters.first_entry.push_back(begin);
         clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
-        // Mirrors the upper triangle. With a bitwise symmetric inverse, contact i changes the velocity of contact j
-        // exactly as j changes that of i.
+        // Mirrors the upper triangle, so that the inverse is bitwise symmetric. Contact i then changes the velocity of
+        // contact j exactly as j changes that of i.
         for (Eigen::Index i = 0; i < inverse.rows(); ++i)
             for (Eigen::Index j = 0; j < inverse.cols(); ++j)
                 clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =

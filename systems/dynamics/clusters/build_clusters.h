@@ -13,8 +13,8 @@ namespace skerry {
 /// Columns of bodies, elements and nodes from which clusters are built.
 struct ClusterInputs {
     std::span<const Range> body_blocks;
-    std::span<const Real> body_cluster_step;  // s
-    std::span<const ElementLane> modulus;     // Pa, by block
+    std::span<const Real> body_cluster_step;  // longest step at which the implicit elements are stable; 0: none [s]
+    std::span<const ElementLane> modulus;     // by block: assumed modulus; 0 for an explicit element [Pa]
     std::span<const Real> mass, inverse_mass;
 };
 
@@ -31,8 +31,9 @@ void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs
                       std::span<const std::uint8_t> body_changed, NodeClusters& clusters);
 
 /// Sizes of the clusters that build_clusters() would make for a body. `largest`: node count of the largest cluster.
-/// `entries`: number of entries of all inertia matrices together. `cubes`: sum of the cubes of the node counts,
-/// proportional to the cost of the inversions. Row 0 of `modulus` belongs to the block blocks.begin.
+/// `entries`: number of entries of all inertia matrices together. `cubes`: sum of the cubes of the node counts, to
+/// which the cost of inverting the matrices is proportional. `modulus`: assumed moduli of the elements; row 0 belongs
+/// to the block blocks.begin.
 struct ClusterSizes {
     std::size_t largest = 0, entries = 0, cubes = 0;
 };

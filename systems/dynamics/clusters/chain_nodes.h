@@ -16,7 +16,8 @@ inline bool holds(const ElementGradient& gradient, std::size_t l) {
     return gradient[0][l] != 0 || gradient[1][l] != 0 || gradient[2][l] != 0;
 }
 
-/// Calls visit(block, lane, modulus) for every implicit element. Row 0 of `modulus` belongs to the block blocks.begin.
+/// Calls visit(block, lane, modulus) for every implicit element. `modulus`: assumed moduli by block, 0 for explicit
+/// elements; row 0 belongs to the block blocks.begin.
 template <class Visit>
 void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit&& visit) {
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)

@@ -249,8 +249,9 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
 }
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
-    // Every fourth round also makes elements implicit, so that the mass shares can adapt in between. Every 24th round
-    // computes the rigorous bound; all others estimate it.
+    // Every fourth round also makes elements implicit, so that the mass shares can adapt in between. Most rounds
+    // estimate the stable steps. The rigorous bound is computed in the first and in every 24th round after it, and to
+    // confirm an estimate by which all elements are stable.
     constexpr int rounds_of_sharing = 4;
     constexpr int rounds_of_estimates = 24;
     // Largest factor by which a mass share may change in one round. Without this limit, an element that stays unstable
@@ -296,8 +297,8 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
                                     const ImplicitOutputs& out, const ElementBounds& bounds) {
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> step(out.mass_share.size());
-    // When an element becomes implicit, explicit elements get its mass share. Their stable steps then change, so the
-    // loop runs until no element becomes implicit.
+    // The mass share of an element that becomes implicit passes to explicit elements, which changes their stable steps.
+    // So the loop runs until no further element becomes implicit.
     for (bool any_added = true; any_added;) {
         bounds.steps(elements, blocks, position, mass, stiffness_sum, step);
         any_added = false;

@@ -12,8 +12,8 @@ namespace skerry {
 
 /// Output columns of the search, with one row per element block of the body.
 struct ImplicitOutputs {
-    // Weight with which an explicit element gets a share of the masses of its nodes. It is 0 for implicit elements,
-    // which get no mass.
+    // Weight of an explicit element when the mass of a node is shared among its elements. It is 0 for implicit
+    // elements, which get no mass.
     std::span<ElementLane> mass_share;
     std::span<ElementLane> modulus;  // assumed modulus of an implicit element; 0 for an explicit element [Pa]
 };
@@ -23,7 +23,7 @@ struct ImplicitGoal {
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms
     // (ElementBlockTable::mass_form), which are computed later, will allow longer steps.
     Real stable;
-    Real headroom;    // assumed divided by present stiffness of an implicit element, which may stiffen later
+    Real headroom;    // ratio of assumed to present stiffness of an implicit element, which may stiffen later
     Real max_moment;  // largest allowed ImplicitShare::moment; the search fails above it
     // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. A limit requires
     // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]), because clusters contain only moving nodes.
@@ -42,10 +42,10 @@ struct ImplicitShare {
 /// that do not depend on the step length are computed once, when they are first needed. All constructor arguments must
 /// outlive the search, and only the output columns may change meanwhile. Sequential.
 ///
-/// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore only estimate how the
-/// bound changes with the mass shares. The step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
-/// g_k^T / m_k, with the shape gradient g_k at node k, and the part m_k that the element gets of the mass of node k.
-/// The trace takes one product per node.
+/// find() changes the mass shares in rounds. The rigorous bound on the stable step of an element needs 9x9 matrices, so
+/// most rounds only estimate how the bound changes with the mass shares. The step is nearly proportional to 1/sqrt(T),
+/// where T is the trace of sum_k g_k g_k^T / m_k. g_k is the shape gradient at node k, and m_k the part of the mass of
+/// node k that the element gets. The trace takes one product per node.
 class ImplicitSearch {
 public:
     /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
@@ -59,8 +59,8 @@ public:
     /// inertia or form too large a cluster. The outputs are then invalid.
     ImplicitShare find(const ImplicitGoal& goal);
 
-    /// Estimate of the fraction of the volume that must be implicit, so that the masses of the nodes suffice for all
-    /// other elements at a stable step of `stable` [s]. It takes a small fraction of the time of find().
+    /// Estimate of the fraction of the volume that must become implicit. The remaining elements are then stable at a
+    /// step of `stable` [s] with the masses of the nodes. The estimate takes much less time than find().
     Real estimate_volume(Real stable) const;
 
 private:
@@ -82,15 +82,16 @@ private:
         const auto e = static_cast<std::size_t>(element);
         return column[e / element_lanes][e % element_lanes];
     }
-    /// Fraction of the masses of its nodes that an element needs to be stable at `step`. If the fraction is above 1, no
-    /// mass share can make the element stable.
+    /// Fraction of the masses of its nodes that an element needs to be stable at `step` [s]. If the fraction is above
+    /// 1, no mass share can make the element stable.
     Real needed_fraction(std::size_t b, std::size_t l, Real step) const;
-    /// Computes the data of find() that do not depend on the step length. Mass shares must still be those of
-    /// start_mass_shares(): unit_ is divided by them, which a share of 0 would prevent.
+    /// Computes the data of find() that do not depend on the step length. Mass shares must still have their initial
+    /// values (start_mass_shares()), because unit_ is divided by them and later shares may be 0.
     void prepare();
     void list_incidences();
     /// measure() and estimate() compute the stable steps of all elements with their present mass shares. measure() uses
-    /// the rigorous bound, estimate() the change of the trace since the last rigorous bound.
+    /// the rigorous bound. estimate() scales the last rigorous bound by the change of the trace since then
+    /// (find_trace()).
     void measure();
     void estimate();
     /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends
@@ -101,9 +102,10 @@ private:
     /// Marks of an element: near_unstable if any of its nodes has this mark, and near_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes elements implicit that share a node with an element unstable at `step`, if their needed_fraction() is at
-    /// least min_needed_fraction_, or if all their nodes belong to implicit elements, because then they enlarge no
-    /// cluster. Lowers min_needed_fraction_ if there is no such element.
+    /// Makes some neighbours of unstable elements implicit. Neighbours share a node with an element that is unstable at
+    /// `step`, or are unstable themselves. Such an element becomes implicit if its needed_fraction() is at least
+    /// min_needed_fraction_, or if all its nodes belong to implicit elements, because then it enlarges no cluster. If
+    /// there is no such element, min_needed_fraction_ is lowered for the next call.
     void make_unstable_implicit(Real step);
     /// Writes the assumed moduli of the implicit elements. Returns the moment of inertia that they add, and whether
     /// they have too much volume or form too large a cluster.
@@ -121,7 +123,7 @@ private:
     Index first_node_ = 0;
     std::vector<Incidence> incidences_;
     std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
-    std::vector<ElementLane> stiffness_;  // bound on the material Hessian in the shape `position_` [Pa]
+    std::vector<ElementLane> stiffness_;  // upper bound on the material Hessian in the shape `position_` [Pa]
     std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its initial mass share
     // Values by element: stable step (step_), stable step at the last rigorous bound (measured_step_), trace at that
     // bound (measured_trace_), present trace (present_trace_), stiffness weight (weight_).

@@ -19,7 +19,8 @@ void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> m
 /// 0. `step`: longest step at which the implicit elements are stable (BodyTable::cluster_step) [s].
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time);
 
-/// Largest ratio of present to assumed stiffness among the implicit elements of a body; 0 without implicit elements.
+/// Largest ratio of the present stiffness to the assumed stiffness (`modulus`) of the implicit elements of a body; 0
+/// without implicit elements.
 Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const ElementLane> modulus);
 
@@ -32,15 +33,15 @@ Real added_energy(const ElementInputs& elements, Range blocks, std::span<const E
 /// centre of mass.
 Real least_moment_of(const Mat3& spread);
 
-/// Relative error of the least principal moment of inertia by lumping: each tetrahedron, of uniform density, puts a
-/// quarter of its mass at each corner. 0 for a body without volume.
+/// Relative error of the least principal moment of inertia that lumped masses cause. Lumping moves a quarter of the
+/// mass of each tetrahedron, which has uniform density, to each corner. Returns 0 for a body without volume.
 Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
                        std::span<const Vec3> position);
 
-/// Factor beta [s^2] in the inertia matrix of clusters, A = M + beta (sum of assumed element stiffnesses), for which
-/// steps up to `step` [s] are stable.
+/// Factor beta in the inertia matrix of clusters [s^2]: A = M + beta (sum of assumed element stiffnesses), with the
+/// matrix M of lumped masses. With this beta, steps up to `step` [s] are stable.
 constexpr Real inertia_of_stiffness(Real step) {
-    // Bound on circular frequency times step (step_times_frequency); the stability limit is 2.
+    // upper bound on circular frequency times step (step_times_frequency); the stability limit is 2
     constexpr Real safety = 1.8;
     return step * step / (safety * safety);
 }

@@ -36,8 +36,8 @@ struct ByComponent {
     Vec3 at(std::size_t index) const { return {component[0][index], component[1][index], component[2][index]}; }
 };
 
-/// Products of some matrix rows with the vectors of a ByComponent, one for each component. Lane l sums the columns l, l
-/// + 8, l + 16 and so on.
+/// Products of some matrix rows with the vectors of a ByComponent, one for each component. Lane l sums the columns
+/// l, l + 8, l + 16 and so on.
 template <std::size_t Rows>
 struct RowSums {
     std::array<Real8, Rows> x{}, y{}, z{};
@@ -51,10 +51,11 @@ template <std::size_t Rows, class Visit>
     (std::make_index_sequence<Rows>());
 }
 
-/// Multiplies `Rows` rows of a symmetric matrix, from row `first_row` on, by the vectors `kick` and returns the sums of
-/// the rows. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each entry also stands for the
-/// transposed entry: times the kick of its row, it is added to `sum` at its column. Thus only one triangle of the
-/// matrix is read, which matters because large matrices do not fit into the caches.
+/// Multiplies `Rows` rows of a symmetric matrix, from row `first_row` on, by the vectors `kick` (impulses on the
+/// nodes), and returns the sums of the rows. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each
+/// entry also stands for the transposed entry: its product with the vector `kick` of its row is added to `sum` at its
+/// column. Thus only one triangle of the matrix is read, which matters because large matrices do not fit into the
+/// caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t first_row, std::size_t width,
@@ -107,8 +108,9 @@ template <std::size_t Rows>
              to);
 }
 
-/// Computes the sums of `Rows` rows, from row `first_row` on, of the complete diagonal tile that begins at row `first`.
-/// The tile contains both triangles, so its entries do not also stand for their transposed entries.
+/// Multiplies `Rows` complete rows, from row `first_row` on, by the vectors `kick`, and stores the sums. The rows cross
+/// the diagonal in the complete tile that begins at row and column `first`. This tile contains both triangles, so its
+/// entries do not also stand for their transposed entries.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -126,8 +128,8 @@ void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, 
     store_sums(rows.z, sum.component[2] + first_row);
 }
 
-/// Computes the sums of `Rows` rows, from row `first_row` on, of the last, incomplete tile, which begins at row
-/// `first`.
+/// Multiplies `Rows` rows, from row `first_row` on, by the vectors `kick`, and stores the sums. The rows cross the
+/// diagonal in the last, incomplete tile, which begins at row and column `first`.
 template <std::size_t Rows>
 void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                      const ByComponent& kick, const ByComponent& sum) {
@@ -159,7 +161,7 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
 
 /// Index of the tile of working memory at which cluster `c` begins. `begin`: index of the first node of the cluster in
 /// the list of all cluster nodes. Each of the c clusters before it is padded to complete tiles, with at most 7 nodes.
-/// Together they fill at most (begin + 7 c)/8 tiles, rounded down, which is at most begin/8 + c, rounded down.
+/// So they fill at most (begin + 7 c)/8 tiles, rounded down. The result leaves room for at least as many tiles.
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

@@ -153,7 +153,7 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
 }
 
 /// Calls stiffen_block() for the blocks of awake bodies with clusters for which is_due(block) is true. Returns the
-/// added kinetic energy without that of ghosts [J].
+/// added kinetic energy [J], without that of ghosts (copies of bodies of other ranks).
 template <class IsDue>
 Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StepForces* forces,
              const StiffenOutputs& out, IsDue&& is_due) {

@@ -15,11 +15,11 @@ namespace skerry {
 
 struct StiffenInputs {
     std::span<const Range> body_blocks;
-    std::span<const Real> body_cluster_step;  // step for which the clusters are made; 0 without clusters [s]
+    std::span<const Real> body_cluster_step;  // longest step at which the clusters are stable; 0 without clusters [s]
     std::span<const std::uint8_t> body_asleep;
     std::span<const Vec3> position, velocity;
     std::span<const Real> inverse_mass;
-    GhostMarks ghosts = {};  // ghosts, whose elements are stiffened but do not count in the energy
+    GhostMarks ghosts = {};  // copies of bodies of other ranks: stiffened, but do not count in the energy
 
     static StiffenInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
         return {.body_blocks = binder.read(body.blocks),
@@ -54,8 +54,8 @@ struct StiffenOutputs {
 /// element order.
 ///
 /// The momentum of the deformation of a stiffened element stays constant, so its rate of deformation decreases. The
-/// impulse that this takes (docs/methods/clusters.md 6) is added to the element forces, which act for the time `kick`
-/// [s], and to the viscous impulses. Tests only the blocks that compute_element_forces has marked in
+/// impulse that causes this decrease (docs/methods/clusters.md 6) is added to the element forces, which act for the
+/// time `kick` [s], and to the viscous impulses. Tests only the blocks that compute_element_forces has marked in
 /// `patches.stiffening` for the present node positions, and clears these marks.
 Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);

@@ -176,9 +176,9 @@ void fill_rows(const ElementList& list, std::span<const Index> lanes, Index firs
                 nodes.gradient[r][i][l] = list.gradient[next][static_cast<Eigen::Index>(i)];
         }
     }
-    // The gradient of the first node is minus the sum of all other gradients, summed in row order like the forces in
-    // the kernel, which sets the force on the first node to minus the sum of the other forces. It is written as 0 -
-    // sum, so that a sum of zero does not give -0.
+    // The gradient of the first node is minus the sum of all other gradients. The sum runs in row order, like the sum
+    // of forces in the kernel, which sets the force on the first node to minus the sum of the other forces. The
+    // difference 0 - sum, unlike -sum, is never -0.
     for (std::size_t l = 0; l < element_lanes; ++l)
         for (std::size_t i = 0; i < 3; ++i)
             nodes.gradient[static_cast<std::size_t>(rows.begin)][i][l] = 0 - others[l][static_cast<Eigen::Index>(i)];
@@ -272,8 +272,8 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
 
 namespace {
 
-/// Appends a list for each row that has none yet. The list of a row contains all items i with row_of_item[i] == row,
-/// ascending. Items that are not in a list yet must belong to rows without a list.
+/// Appends the lists of the rows from items.size() to row_count - 1, which have no list yet. The list of a row contains
+/// all items i with row_of_item[i] == row, ascending. Items that are not in a list yet must belong to these rows.
 void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragged<Index>& items) {
     // Counting sort: count the items of each row, form prefix sums, fill the lists.
     if (items.offset.empty()) items.offset.push_back(0);

@@ -39,22 +39,22 @@ struct AppendedElements {
 /// elements_per_patch neighbouring elements, found by repeatedly halving the body along its longest side.
 /// `rest_position`: rest positions of the nodes of the body [m].
 ///
-/// Within a patch, all elements of a block have the same part of the stress (ElementPart) and the same material.
-/// Elements with equal numbers of nodes are adjacent, so that few rows are unused. Otherwise elements keep the order of
-/// the list. Inversion barriers (guards) have patches of their own, after all others.
+/// Within a patch, all elements of a block have the same part of the stress (ElementPart) and the same material. Among
+/// these, elements with equal numbers of nodes are adjacent, so that few rows of a block are unused. Otherwise elements
+/// keep the order of the list. Inversion barriers (guards) have patches of their own, after all others.
 ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position);
 
 /// Appends the elements of a new body to the tables, in the lanes `places`. `places` may have been found for another
-/// list whose elements have the same nodes and parts and are divided among materials in the same way. The nodes of an
-/// element are reordered, so that the force kernel seldom adds to a node twice in close succession.
+/// list, if its elements have the same nodes, the same parts of the stress and the same division among materials. The
+/// nodes of an element are reordered, so that the force kernel seldom adds to a node twice in close succession.
 AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);
 /// Assigns the elements of a new body to lanes of blocks, and appends the elements to the tables.
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, Index first_node,
                                  Index body, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
-/// Rotates the rest shape of the elements in the blocks `rows`: gradients, mass forms, and the axes of materials
-/// (`orientation`).
+/// Rotates the rest shape of the elements in the blocks `rows`: their gradients, their mass forms
+/// (ElementBlockTable::mass_form), and the axes of their materials (`orientation`).
 void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
 /// Adds a quarter of the mass of each tetrahedron, rho V / 4, to each of its nodes. `density`: rho by tetrahedron
@@ -63,8 +63,8 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
                      std::span<const Real> density, std::span<Real> mass);
 
 /// Builds the patches, the lists of their nodes, and the slots of element nodes. A slot is the entry of a patch for one
-/// of its nodes. Covers only blocks and nodes that are in no patch yet, and keeps the patches that `patches` already
-/// has. The slots of a patch are in the order of the nodes. The slots of a node are in the order of the patches.
+/// of its nodes. Covers only blocks and nodes that are in no patch yet, and keeps the existing patches of `patches`.
+/// The slots of a patch are in the order of its nodes. The slots of a node are in the order of the patches.
 void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes, ElementPatches& patches);
 
 /// Removes all patches except those of the first `block_count` blocks and `node_count` nodes, which must belong to

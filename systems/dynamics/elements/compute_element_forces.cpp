@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-// Numbers of blocks and of their rows by which prefetching is ahead of the computation.
+// Numbers of blocks, and of rows of blocks, by which prefetching is ahead of the computation.
 constexpr std::size_t blocks_ahead = 6, rows_ahead = 32;
 
 // Size of a local buffer of node positions (16 kB), which stays in the L1 cache. Patches with more nodes use
@@ -63,8 +63,8 @@ struct Run {
     bool relaxes() const { return material.relaxes() && !next.spring_strain.empty(); }
 
     /// Relaxes the springs of the Maxwell elements and writes their strains. Returns their second Piola-Kirchhoff
-    /// stress, divided by maxwell.modulus. Adds the dissipated energy to `relaxed`, which dissipated_of() converts to
-    /// joules.
+    /// stress, divided by maxwell.modulus. `scale`: minus the volume of the element. Adds the dissipated energy to
+    /// `relaxed`, which dissipated_of() converts to joules.
     [[gnu::always_inline]] LaneSymmetric<Float8> relax_springs(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                                                const Parts<KernelReal>& scale,
                                                                Parts<KernelReal>& relaxed) const {
@@ -88,8 +88,8 @@ struct Run {
         return stress;
     }
 
-    /// Rotations nearest to F, as quaternions, and the traces of R^T F. The iteration runs for all lanes of a block
-    /// together, so that its number of steps, and with it the bits, do not depend on the register width.
+    /// Rotations R nearest to F, as quaternions, and the traces of R^T F. The iteration runs for all lanes of a block
+    /// together. Its number of steps, and with it the bits of the result, then do not depend on the register width.
     struct Frames {
         Parts<LaneQuaternion<KernelReal>> q;
         Parts<KernelReal> trace;
@@ -112,7 +112,7 @@ struct Run {
         return frames;
     }
 
-    /// Elastic stress of the elements in one register-wide part of a block [Pa].
+    /// Elastic stress of the elements in one part of a block, which fills a register [Pa].
     template <class Law>
     [[gnu::always_inline]] auto elastic_stress(const Law& law, const LaneMat3<KernelReal>& F, const Frames& frames,
                                                std::size_t part) const {
@@ -125,12 +125,12 @@ struct Run {
     /// True for implicit elements so near to their rest shape that they have no viscosity. `square`: |F|^2, `J`: det F.
     template <class T>
     static auto is_small_strain(const T& square, const T& J) {
-        constexpr Real stretched = 6, pressed = 0.3;  // limits on |F|^2 and det F, which are 3 and 1 in the rest shape
+        constexpr Real stretched = 6, pressed = 0.3;  // upper limit of |F|^2, lower limit of det F; 3 and 1 at rest
         return (square < stretched) & (J > pressed);
     }
 
-    /// True if the block has implicit elements, none of them is viscous, and none is nearly as stiff as assumed. This
-    /// holds for most blocks in most steps.
+    /// True if the block has implicit elements, none of them is viscous, and the stiffness of none is near its assumed
+    /// stiffness. The result is true for most blocks with implicit elements in most steps.
     template <class Law>
     [[gnu::always_inline]] bool is_near_rest(const Law& law, std::size_t block,
                                              const Parts<LaneMat3<KernelReal>>& F) const {
@@ -147,8 +147,8 @@ struct Run {
         return any_implicit && easy;
     }
 
-    /// Computes the viscosity of implicit elements: positive if an element is strongly stretched or compressed, else 0
-    /// [Pa s]. Returns true if any element is viscous.
+    /// Computes the viscosity of implicit elements [Pa s]. It is positive if an element is strongly stretched or
+    /// compressed, else 0. Returns true if any element is viscous.
     bool viscosity_of_implicit(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
@@ -243,8 +243,9 @@ struct Run {
             for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = whole(elastic(part), F[part]);
         }
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-            // Without the copies gcc would keep F and Q in memory, because with_viscous_stress() takes their addresses,
-            // even when it is not called. It would also store intermediate results of the stress for is_near_rest().
+            // with_viscous_stress() takes the addresses of its arguments. Without the copies gcc would therefore keep F
+            // and Q in memory, even in blocks without viscosity. It would also store intermediate results of the stress
+            // for is_near_rest().
             if (is_near_rest(law, block, copy_of_parts(F)))
                 record(block, false, false);
             else
@@ -306,8 +307,8 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    // load_position reads one number past the position. Only the last node, the highest, may be at the end of the
-    // array.
+    // load_position reads one number past the position. For the last node, the highest, this number may lie beyond the
+    // end of the array, so its position is copied number by number.
     const std::size_t last = node.size() - 1;
     for (std::size_t s = 0; s < last; ++s) store_half(load_position(&at(s)), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
@@ -360,7 +361,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
     });
     const auto relaxes = [](const MaterialConstants& material) { return material.relaxes(); };
     if (std::ranges::none_of(elements.constants, relaxes)) return 0;
-    // in order of patches: same bits for any number of workers
+    // The sum runs in the order of patches, so that its bits do not depend on the number of workers.
     return std::accumulate(patches.relaxed.begin(), patches.relaxed.end(), Real{0});
 }
 

@@ -25,21 +25,22 @@ struct ElementInputs {
     std::span<const Mat3> orientation = {};   // may be empty if no material is anisotropic
     std::span<const Index> body = {};         // row of BodyTable by block; may be empty if no body is left out
     std::span<const Real> viscous_time = {};  // viscosity / modulus by block; may be empty if none is viscous [s]
-    // The next four spans describe the part of the stress that relaxes; they may be empty if no material relaxes.
+    // The next four spans describe the Maxwell elements, whose stress relaxes; they may be empty if no material
+    // relaxes.
     std::span<const RelaxationRates> relaxation_rate = {};
     std::span<const ElementLane> own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const SpringStrain> spring_strain = {};
-    // Columns of BodyTable. Elements of idle bodies (asleep, or led by another rank) and of unstrained bodies are left
-    // out of a step. An empty span means that there are no such bodies.
+    // Columns of BodyTable. Elements of idle bodies (asleep, or led by another rank) and of unstrained bodies (in
+    // translation without strain) are left out of a step. An empty span means that there are no such bodies.
     std::span<const std::uint8_t> body_idle = {};
     std::span<const std::uint16_t> body_unstrained = {};
-    std::span<const ElementForm> mass_form = {};  // may be empty if all use mass_share [1/(kg m^2)]
+    std::span<const ElementForm> mass_form = {};  // may be empty if all elements use mass_share [1/(kg m^2)]
     // Assumed modulus; 0 for an explicit element; empty if not bound (bind_explicit) [Pa]
     std::span<const ElementLane> implicit_modulus = {};
     std::span<const FrameMass> frame_mass = {};
     std::span<const Real> frame_bound = {};  // may be empty if no body has frame masses [1/s^2]
-    GhostMarks ghosts = {};                  // ghosts, whose elements are computed but do not count in sums of energy
+    GhostMarks ghosts = {};                  // copies of bodies of other ranks: computed, but do not count in energies
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {
@@ -105,7 +106,7 @@ struct ElementInputs {
     }
 };
 
-/// Limit on the quick stiffness bound of an implicit element, as a fraction of the assumed stiffness. Above this limit
+/// Upper limit on quick_stiffness() of an implicit element, as a fraction of the assumed stiffness. Above this limit
 /// the stiffness is computed accurately.
 inline constexpr Real near_stiffness = 0.7;
 
@@ -119,8 +120,8 @@ struct PatchForces {
     std::span<PaddedVec3> force;                            // N, by slot
     std::span<ElementViscousImpulse> viscous_impulse = {};  // viscous impulse by block; empty if no element is viscous
     std::span<std::uint8_t> viscous = {};                   // 1 if the block has a viscous impulse in this step
-    // 1 if the quick stiffness bound of an implicit element of the block is above near_stiffness. Blocks that are left
-    // out are not written.
+    // 1 if quick_stiffness() of an implicit element of the block is above near_stiffness times its assumed stiffness.
+    // Blocks that are left out are not written.
     std::span<std::uint8_t> stiffening = {};
     std::span<Real> relaxed = {};  // energy that the dashpots of a patch dissipate; may be empty if there are none [J]
 
@@ -157,9 +158,9 @@ struct ElementMemory {
 /// x_k and the gradients g_k at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 +
 /// f_2 + ...). Sums run block by block and lane by lane, so that the bits do not depend on the number of workers.
 ///
-/// Corotational elements start the search for their frame from `rotation` and write next.rotation; other laws write no
-/// frame. For bodies that are left out (is_left_out()), `patches.force` stays unchanged. `kick`: time for which forces
-/// act [s].
+/// The corotational frame of an element is the rotation nearest to F. Laws with a frame start the search for it from
+/// `rotation` and write it to next.rotation; other laws write no frame. For bodies that are left out (is_left_out()),
+/// `patches.force` stays unchanged. `kick`: time for which forces act [s].
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches);

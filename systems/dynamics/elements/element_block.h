@@ -1,6 +1,6 @@
-// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes. Loops over
-// the register-wide parts of a block are unrolled, because gcc keeps the entries of an array in registers only if every
-// index is a constant.
+// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes. A block is
+// computed in register-wide parts: one part of eight lanes or two parts of four. Loops over the parts are unrolled,
+// because gcc keeps the entries of an array in registers only if every index is a constant.
 #pragma once
 
 #ifdef __AVX512VL__
@@ -27,9 +27,9 @@ namespace skerry {
     return *reinterpret_cast<const Real4*>(at->lane);
 }
 
-/// Positions of the nodes of a patch, or forces on these nodes. Each node has a PaddedVec3. A slot is the offset of its
-/// first number (ElementNodeTable::slot), not its index: processors scale an index by at most eight bytes, and a
-/// PaddedVec3 is longer.
+/// Positions of the nodes of a patch, or forces on these nodes; each node has a PaddedVec3. A slot
+/// (ElementNodeTable::slot) is the offset of the first number of a PaddedVec3, not the index of the PaddedVec3.
+/// Processors scale an index by at most eight bytes, and a PaddedVec3 is longer.
 template <class Number>
 struct PatchRows {
     Number* first;
@@ -60,8 +60,8 @@ template <class Positions>
     return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
-/// Variant of load_corner for a block that contains the last node. Its position ends the array, and load_position()
-/// would read beyond it.
+/// Variant of load_corner for a block that contains the last node. The position of this node ends the array, and
+/// load_position() would read beyond the end.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         const Vec3 &a = position[node[l]], &b = position[node[l + 4]];
@@ -96,8 +96,8 @@ template <class Positions>
              load_position(position + corner[2]), load_position(position + corner[3])}};
 }
 
-/// Variant of load_corner for a block that contains the last node. Its position ends the array, and load_position()
-/// would read beyond it.
+/// Variant of load_corner for a block that contains the last node. The position of this node ends the array, and
+/// load_position() would read beyond the end.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
     const auto at = [&](std::size_t l) {
         const Vec3& p = position[node[4 * part + l]];
@@ -292,8 +292,8 @@ template <class Take>
         take(Index{0}, part, LaneVec3<KernelReal>{-sum[part].x, -sum[part].y, -sum[part].z});
 }
 
-/// Adds the force in lane l of f to force[slot[l]]. The lanes are added one after the other, because several may have
-/// the same node.
+/// Adds the force in lane l of f to force[slot[l]]. The lanes are added one after the other, because several lanes may
+/// have the same node.
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
     // Contains x0 y0 x2 y2: letters are components of f, digits are lanes.
     const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);

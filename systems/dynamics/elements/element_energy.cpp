@@ -45,8 +45,8 @@ void for_each_block(const ElementInputs& elements, Range blocks, std::span<const
 
 /// Cauchy stress of the elements of a block [Pa]; zero in lanes without volume.
 LaneMat3<Real8> cauchy_stress_of(const Real8& volume, const LaneMat3<Real8>& F, const LaneMat3<Real8>& P) {
-    // The Cauchy stress P F^T / |J| divides by at least this volume ratio, so that it stays finite for flattened
-    // elements.
+    // Lower limit of the divisor |J| in the Cauchy stress P F^T / |J|. It keeps the stress of flattened elements
+    // finite.
     constexpr Real least_volume_ratio = 1e-6;
     const Real8 J = determinant(F), size = J < 0.0 ? -J : J, zero{};
     const Real8 ratio = size > least_volume_ratio ? size : zero + least_volume_ratio;

@@ -18,12 +18,12 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
                    std::span<const Vec3> velocity);
 
 /// Writes the Cauchy stress of each element in a range of blocks to stress[8 (block - blocks.begin) + lane] [Pa]. The
-/// relaxing part of the stress is not included.
+/// stress of Maxwell elements is not included.
 void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> stress);
 
 struct ElementFields {
     Mat3 gradient;                       // deformation gradient F
-    Mat3 nominal_stress, cauchy_stress;  // nominal: first Piola-Kirchhoff; both without the relaxing part [Pa]
+    Mat3 nominal_stress, cauchy_stress;  // nominal: first Piola-Kirchhoff; without Maxwell elements [Pa]
     Mat3 strain;                         // Green strain
 };
 

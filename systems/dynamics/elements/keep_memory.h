@@ -1,5 +1,5 @@
 // Updates the memory of the elements (rotation, spring strains) after a committed step with sleeping bodies, whose
-// elements the step did not write. After other steps the columns are swapped instead.
+// elements the step did not write. After other steps the columns of present and next values are swapped instead.
 #pragma once
 
 #include <span>

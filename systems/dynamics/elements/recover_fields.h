@@ -12,16 +12,17 @@
 
 namespace skerry {
 
-/// Lists of the tetrahedra that each element of a body covers. There is one list for each lane of the blocks of the
-/// body, empty for an unused lane and for a guard. Tetrahedra are numbered within the body.
+/// Lists of the tetrahedra that each element of a body covers, which are those over which it averages the deformation
+/// gradient. There is one list for each lane of the blocks of the body, empty for an unused lane and for a guard
+/// (inversion barrier). Tetrahedra are numbered within the body.
 struct ElementCover {
     std::span<const ElementPart> part;  // by block: part of the stress of its elements
     RaggedView<Index> tetrahedra;       // by lane: tetrahedra that its element covers
 };
 
-/// Stress of each of the `count` tetrahedra of a body [Pa]: the sum of the means of the parts `whole`, `shear` and
-/// `volume` of the stress (ElementPart), each over the elements that cover the tetrahedron. `element_values`: stress by
-/// lane of the blocks.
+/// Stress of each of the `count` tetrahedra of a body [Pa]. Each part of the stress (`whole`, `shear` and `volume` of
+/// ElementPart) is averaged over the elements that cover the tetrahedron. The stress is the sum of these means.
+/// `element_values`: stress by lane of the blocks.
 std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> element_values,
                                        std::size_t count);
 

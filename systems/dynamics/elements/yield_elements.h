@@ -25,10 +25,12 @@ inline constexpr std::size_t blocks_per_yield = 64;
 
 /// Moves the elastic strain of all elements in a range of blocks back to the yield surface, at the given positions
 /// (radial return, Simo 1992). Elements that do not yield, or are left out of the step, stay unchanged. An element with
-/// a stretch or volume ratio below the limits of its law (Ogden::least_stretch, least_volume) does not flow. Returns
-/// the dissipated energy, the plastic work [J]. Only the work of the stress along the yield surface counts. The excess
-/// of the elastic energy before the return does not, because the stress before the return never acted on the nodes.
-/// `parts`: work memory, one entry per blocks_per_yield blocks. Parallel over blocks.
+/// a stretch or volume ratio below the limits of its law (Ogden::least_stretch, least_volume) does not flow. `parts`:
+/// work memory, one entry per blocks_per_yield blocks. Parallel over blocks.
+///
+/// Returns the dissipated energy, the plastic work [J]. It contains only the work of the stress along the yield
+/// surface. The excess of the elastic energy before the return is not included, because the stress before the return
+/// never acted on the nodes.
 Real yield_elements(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     const PlasticState& state, std::span<Real> parts);
 

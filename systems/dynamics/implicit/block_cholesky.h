@@ -1,5 +1,5 @@
-// Cholesky factorisation of sparse symmetric matrices of 3x3 blocks, one block for each pair of nodes
-// (docs/methods/implicit_bodies.md 3).
+// Cholesky factorisation of sparse symmetric matrices of 3x3 blocks. Each block couples two nodes; nodes that share no
+// element have no block (docs/methods/implicit_bodies.md 3).
 #pragma once
 
 #include <span>
@@ -21,8 +21,9 @@ struct BlockRows {
     void multiply(std::span<const Vec3> x, std::span<Vec3> out) const;
 };
 
-/// Index of each node in an elimination order with little fill-in (minimum degree). `neighbours` lists for each node
-/// all other nodes with which the node shares a block; each pair occurs in the lists of both nodes.
+/// Returns the index of each node in an elimination order. The order is chosen by minimum degree, so that the Cholesky
+/// factor has few nonzero blocks. `neighbours`: for each node, all other nodes that a block of the matrix couples to
+/// it; each pair of nodes occurs in both lists.
 std::vector<Index> elimination_order(const std::vector<std::vector<Index>>& neighbours);
 
 /// Cholesky factorisation L L^T of a matrix A, row by row (up-looking: Davis, Direct Methods for Sparse Linear Systems,
@@ -42,8 +43,8 @@ public:
 private:
     template <class X>
     void solve_in_place(X* x) const;
-    /// Columns of the nonzero blocks in row `k` of L. Each column comes after those columns of the row on which it
-    /// depends. Sets mark_ of these columns and of k to k.
+    /// Columns of the nonzero blocks in row `k` of L, left of the diagonal. Blocks of a row are computed in this order:
+    /// each comes after those blocks of the row on which its value depends. Sets mark_ of these columns and of k to k.
     std::span<const Index> columns_of(const BlockRows& pattern, Index k);
 
     std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index for a root
@@ -51,8 +52,8 @@ private:
     std::vector<Index> row_;              // row of each block of L below the diagonal
     std::vector<Mat3> block_;             // L_ij
     std::vector<Mat3> inverse_diagonal_;  // inverses of the diagonal blocks of L (lower triangular)
-    // Work memory for one row k. `mark_`: last row in which each column was found; `path_`: path in the elimination
-    // tree; `stack_`: columns of the row, filled from its end.
+    // Work memory for one row k. `mark_`: by column, the last row in which columns_of() found the column; `path_`: path
+    // in the elimination tree; `stack_`: columns of the row, filled from its end.
     std::vector<Index> mark_, path_, stack_;
     std::vector<std::size_t> end_;  // by column: index after its last block that is computed so far
     std::vector<Mat3> sum_;

@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// 3x3 block of the stiffness matrix that couples two nodes of an element, per volume, from the parts of the tangent
-/// that only anisotropic laws have. `g`, `other`: gradients of the two nodes at rest.
+/// Block of the stiffness matrix for two nodes of an element, per volume. It contains only those terms of the tangent
+/// dP/dF that anisotropic laws have in addition. `g`, `other`: shape function gradients of the two nodes [1/m].
 Mat3 anisotropic_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
     Mat3 block = g.dot(tangent.second_stress * other) * Mat3::Identity();
     for (const Mat3& dyad : tangent.dyads) block += (dyad * g) * (dyad * other).transpose();
@@ -83,8 +83,8 @@ void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out
     for (std::size_t e = 0; e < size(); ++e) {
         const Nodes nodes = nodes_of(e);
         const Mat3 pull = volume_[e] * stress(material_[e], Mat3::Identity() + gradient_of(e, displacement));
-        // Sum over all nodes but the first, which gets the opposite sum because the gradients of an element add up to
-        // zero.
+        // Sum of the forces on all nodes but the first. The first node gets minus this sum, because the shape gradients
+        // of an element add up to zero.
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < nodes.order_index.size(); ++k) {
             const Vec3 of_node = pull * nodes.gradient[k];
@@ -115,8 +115,9 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         const Nodes nodes = nodes_of(e);
         const Tangent tangent = skerry::tangent(material_[e], Mat3::Identity() + gradient_of(e, displacement));
         const Real weight = scale * volume_[e];
-        // The tangent maps dF to dP in the principal axes of F. `normal` couples the diagonal entries. An off-diagonal
-        // entry of dP is `diagonal_part` times the same entry of dF plus `crossed` times the transposed entry of dF.
+        // The tangent maps a change dF of the deformation gradient to the change dP of the stress, in the principal
+        // axes of F. `normal` couples the diagonal entries. Other entries are dP_ij = diagonal_part_ij dF_ij +
+        // crossed_ij dF_ji.
         const Mat3 normal = weight * tangent.normal;
         Mat3 diagonal_part = Mat3::Zero(), crossed = Mat3::Zero();
         for (Index i = 0; i < 3; ++i) {

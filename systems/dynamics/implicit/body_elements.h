@@ -12,9 +12,9 @@
 
 namespace skerry {
 
-/// Displacements of the nodes of a body from their rest positions [m]. The index of an entry is the index of its node
-/// in the elimination order. If values are stored by node instead, `node_at` gives the node at each index of the
-/// elimination order.
+/// Displacements of the nodes of a body from their rest positions [m], read by the index of the node in the elimination
+/// order. They are stored in this order or by node. If they are stored by node, `node_at` gives the node at each index
+/// of the elimination order.
 class Displacements {
 public:
     Displacements(std::span<const Vec3> by_order) : by_order_(by_order) {}
@@ -43,22 +43,22 @@ public:
     bool any_nonlinear() const { return any_nonlinear_; }
     /// Largest Frobenius norm |F - 1| of all elements, with the deformation gradient F.
     Real largest_strain(const Displacements& displacement) const;
-    /// Lipschitz constant of largest_strain(): bound on its change, divided by the largest change of a node
-    /// displacement [1/m].
+    /// Upper bound on the change of largest_strain(), divided by the largest change of a node's displacement (a
+    /// Lipschitz constant) [1/m].
     Real strain_by_displacement() const { return strain_by_displacement_; }
     /// Elastic energy of all elements at the given displacements [J].
     Real energy(const Displacements& displacement) const;
     struct EnergyDifference {
-        // `linear`: energy of all elements by linear elasticity [J]. `difference`: sum over the elements of the
-        // absolute difference between the energy by the material law and the energy by linear elasticity [J].
+        // `linear`: energy of all elements by linear elasticity [J]. `difference`: absolute difference between the
+        // energies of an element by the material law and by linear elasticity, summed over the elements [J].
         Real linear, difference;
     };
     EnergyDifference compare_energies(const Displacements& displacement) const;
     /// Computes out = dU/dx, the gradient of the elastic energy U, by index of the node in the elimination order [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
     /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy U to `matrix` [N/m]. Negative eigenvalues
-    /// of single elements are left out, so that the sum is positive semidefinite. The first call finds which blocks of
-    /// the matrix each element adds to, so later matrices must have the same pattern.
+    /// of the second derivatives of single elements are replaced by zero, so that the sum is positive semidefinite. The
+    /// first call finds which blocks of the matrix each element adds to, so later matrices must have the same pattern.
     void add_tangent(const Displacements& displacement, Real scale, BlockRows& matrix);
 
 private:
@@ -75,11 +75,12 @@ private:
     std::vector<Index> order_index_;
     std::vector<Vec3> gradient_;  // shape gradient at each node of each element [1/m]
     std::vector<Real> volume_;    // [m^3]
-    // Material constants of each element, reduced to the part of the stress (ElementPart) that the element exerts.
+    // Material constants of each element. An element may exert only a part of the stress, for example the volumetric
+    // part (ElementPart). The constants of all other parts are then zero.
     std::vector<MaterialConstants> material_;
     bool any_nonlinear_ = false;
     Real strain_by_displacement_ = 0;
-    // For each element and each pair of its nodes: index of the matrix block that couples both nodes.
+    // For each element and each pair of its nodes (also equal ones): index of the matrix block that couples the nodes.
     std::vector<Index> block_;
     std::vector<Vec3> turned_;  // work memory: shape gradients of one element in principal axes
 };

@@ -25,21 +25,22 @@ struct BodyRows {
 };
 
 /// Coefficient 1 + within d of the masses M in the matrix (1 + within d) M + within^2 K of a step, with the damping
-/// rate d of the material and the stiffness K. `within`: theta times the step length [s].
+/// rate d of the material and the stiffness K. `within`: step length times the parameter theta of ImplicitTimes [s].
 Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
-/// Prepares the factor of the small-strain matrix of a step, which stiff.respond() then uses. Returns false if the
-/// matrix cannot be factored.
+/// Computes the Cholesky factor of the matrix of a step at small strain, for later calls of stiff.respond(). Returns
+/// false if the matrix cannot be factored.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
 /// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by index in the elimination
-/// order [N s]. M are the node masses. `force`: elastic forces, by the same index [N]; `within`: theta times the step
-/// length [s].
+/// order [N s]. M are the node masses. `force`: elastic forces, by the same index [N]; `within`: step length times
+/// theta [s].
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
                      std::span<const Vec3> force, const BodyRows& body, std::span<Vec3> impulse);
 
-/// True if strain is large after a step. After a step at large strain the lower bounds of becomes_small() decide.
-/// `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a free body in the frame of the mesh,
-/// zero for a held body [kg m^2/s].
+/// True if strain counts as large after a step. If it was large in the step, it becomes small only below the limits of
+/// becomes_small(). These are lower than the limits of becomes_large(), so that strain does not change between small
+/// and large in every step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a free body in
+/// the frame of the mesh, zero for a held body [kg m^2/s].
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum,
                     const BodyRows& body, StiffBody& stiff);
 

@@ -11,19 +11,20 @@ namespace skerry {
 bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                           std::size_t r, Real h, Real theta, StiffBody& stiff, std::span<Vec3> out);
 
-/// Computes the state at the end of a step in which strain is large at some time. Reads the displacements at the end of
-/// the step, and from out.velocity_next the node velocities that led to them. Returns the damped energy [J].
+/// Computes the state at the end of a step in which strain is large at the start, during or at the end of the step.
+/// Reads the displacements at the end of the step, and from out.velocity_next the node velocities that led to them.
+/// Returns the damped energy [J].
 Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out);
 
-/// Converts the end state of a step at small strain to large strain. Returns the damped energy that the step with
-/// linear elasticity does not contain [J].
+/// Converts the end state of a step with linear elasticity, because strain is large at the end of the step. Returns the
+/// energy that the body loses by this conversion [J]. The damped energy of the step does not contain it.
 Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, StiffBody& stiff,
                   const ImplicitStrains& out);
 
-/// Computes the principal moments of inertia, the principal axes and the rotation of a body in its present shape, or in
-/// its rest shape if `large` is false. `displacement`: by node [m]; `from_mesh`: rotation from the frame of the mesh to
-/// the world.
+/// Computes the principal moments of inertia, the principal axes and their rotation to the world. The body has its
+/// present shape, or its rest shape if `large` is false. `displacement`: by node [m]; `from_mesh`: rotation from the
+/// frame of the mesh to the world.
 void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, StiffBody& stiff,
                   Vec3& moments, Mat3& axes, Mat3& rotation);
 

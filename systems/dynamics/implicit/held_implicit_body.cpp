@@ -100,9 +100,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         if (!loads.load.empty()) outer += loads.load[body.first_node + n];
         return Vec3(frame.turn.transpose() * outer);
     };
-    // `force`: elastic force of the step if free nodes do not move in the world, (1 - theta) times the force at the
-    // start of the step plus theta times the force at the end. Both forces are equal unless `carried` is true: the
-    // frame or a held node moves.
+    // `force`: elastic forces in the step if free nodes do not move in the world. They are (1 - theta) times the forces
+    // at the start of the step plus theta times the forces at its end. If `carried` is true, the frame or a held node
+    // moves, and the forces at start and end differ.
     bool carried = !frame.is_still;
     for (std::size_t n = 0; n < body.count; ++n) {
         impulse[body.order_index(n)] = displacement[n];
@@ -147,9 +147,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 namespace {
 
 /// Computes the elastic forces on the nodes in a step of large strain, by index in the elimination order [N]. Forces on
-/// free nodes follow from the motion of these nodes, forces on held nodes from the material laws. These forces do not
-/// add up to zero exactly, because Newton's method leaves a residual and the material laws do not see the motion by
-/// contacts. The missing force is divided equally among the held nodes.
+/// free nodes follow from the motion of these nodes, forces on held nodes from the material laws. So they do not add up
+/// to zero exactly: Newton's method leaves a residual, and the motion by contacts is computed with the tangent matrix
+/// instead of the laws. The missing force is divided equally among the held nodes.
 void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
@@ -184,7 +184,7 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
                                 force = body.rows(out.elastic_force), contact = body.rows(out.contact_impulse);
     const Mat3 to_mesh = frame.turn.transpose();
     out.hold_moment[r] = Vec3::Zero();
-    // The velocities of the step refer to the frame of the mesh at the end of the step.
+    // From here on, velocities are in the frame of the mesh at the end of the step.
     const bool any_contact = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
     if (any_contact) {
         for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = theta * (to_mesh * contact[n]);
@@ -196,8 +196,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         displacement_next[n] = frame.carried(nodes.arm(n), displacement[n]) + h * next[n];
     }
     if (bodies.asleep(r)) return 0;
-    // The elastic forces have a moment about the centre, with the lever arms of the deformed shape. The attachment
-    // balances it with hold_moment.
+    // With the lever arms of the deformed shape, the elastic forces have a moment about the centre. The attachment
+    // balances this moment by the angular impulse hold_moment.
     const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
                is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), body, stiff);
     const bool large = newton || was_large || is_large;
@@ -219,8 +219,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         const Vec3 arm = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * arm).cross(world_force);
         // Subtracts the work of the attachment, which rotates the node positions against the elastic forces. The
-        // elastic forces add up to zero, so the translation of the frame does no work. At large strain the work of the
-        // elastic forces is added, and their energy is subtracted below.
+        // translation of the frame does no work, because the elastic forces add up to zero. At large strain the
+        // complete work of the elastic forces is added, and the growth of their energy is subtracted below.
         if (large)
             damped += h * next[n].dot(mesh_force);
         else if (!frame.is_still)

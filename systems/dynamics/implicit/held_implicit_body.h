@@ -16,20 +16,21 @@ struct HeldFrame {
 
     HeldFrame(const ImplicitBodies& bodies, std::size_t r, Real h);
 
-    /// Displacement of a node that does not move in the world, in the frame at the end of the step [m]. `displacement`:
-    /// in the frame at the start [m]. `arm`: rest position of the node relative to the centre [m].
+    /// Displacement at the end of the step of a node that does not move in the world, in the frame at that time [m].
+    /// `displacement`: in the frame at the start [m]. `arm`: rest position of the node relative to the centre [m].
     Vec3 carried(const Vec3& arm, const Vec3& displacement) const {
         return is_still ? displacement : Vec3(across * (arm + displacement) - arm + shift);
     }
 };
 
-/// Kick of one held body: computes the velocities for kick_implicit_bodies. Writes out.velocity_next in the frame of
-/// the mesh at the start of the step.
+/// Computes the node velocities of one held body in the step without its contacts, for kick_implicit_bodies. Writes
+/// out.velocity_next in the frame of the mesh at the start of the step.
 void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
                     StiffBody& stiff, const ImplicitKicks& out);
 
-/// End of the step of one held body, for strain_implicit_bodies. Returns the damped energy minus the work of the moment
-/// with which the attachment acts on the body [J].
+/// Computes velocities and displacements of one held body at the end of the step, for strain_implicit_bodies. `kick`:
+/// time for which loads act on explicit bodies (ImplicitLoads) [s]. Returns the damped energy minus the work of the
+/// moment with which the attachment acts on the body [J].
 Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out);
 

@@ -44,7 +44,8 @@ bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, s
     std::ranges::fill(step.contact_velocity, Vec3::Zero());
     std::ranges::fill(step.assumed_impulse, Vec3::Zero());
     if (std::ranges::all_of(left, [](const Vec3& of_node) { return of_node.isZero(0); })) return true;
-    // Impulses that cause the velocities step.left: the product A step.left with the matrix A of the long step.
+    // step.assumed_impulse: impulses that cause the velocities step.assumed_velocity. They are the product of these
+    // velocities with the matrix A = inertia M + within^2 K of the long step, with the masses M and the stiffness K.
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
     for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = step.assumed_velocity[n];
     body.stiff.elastic_forces(impulse, elastic_force);
@@ -128,8 +129,8 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         next[n] = after;
     }
     // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
-    // stiffness K. The product K v follows from A v, where A is the matrix of the long step and A v are the known
-    // impulses.
+    // stiffness K. The long step has the matrix A = inertia M + within^2 K with the masses M. So v.K v follows from
+    // v.M v and from the known impulses A v.
     step.elastic_next = 0;
     for (std::size_t n = 0; n < body.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
     step.elastic_next += time * at_start + time * time / 2 * (impulse_energy - inertia_energy) / (within * within);
@@ -155,9 +156,10 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.contact_velocity.swap(step.contact_velocity_next);
         step.contact_impulse.swap(step.contact_impulse_next);
         if (!times.ends) continue;
-        // `left` is the length of a long step times the velocity that contacts would have caused in a
-        // complete long step. The next long step assumes this velocity at first. step.contact_velocity covers only the
-        // time step.done, hence the factor times.length / step.done.
+        // `left`: velocity that the contacts would have caused in a complete long step, times the length of a long
+        // step. The next long step first assumes that contacts cause this velocity again. step.contact_velocity
+        // contains only the contacts in the time step.done; the factor times.length / step.done extends it to the
+        // complete step.
         for (std::size_t n = 0; n < body_velocity.size(); ++n)
             body_velocity[n] = times.length * (times.length / step.done) * step.contact_velocity[n];
     }

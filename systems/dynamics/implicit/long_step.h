@@ -12,20 +12,20 @@ namespace skerry {
 /// True if a body takes long steps: long steps are in use, no attachment holds the body, and its strain is small.
 bool takes_long_steps(const ImplicitBodies& bodies, const ImplicitTimes& times, std::size_t r);
 
-/// Computes the velocities with which the node displacements change in this short step without its contacts, by index
-/// in the elimination order. Begins a long step if the body is in none. Returns false if the matrix of the long step
-/// cannot be factored.
+/// Computes the node velocities in this short step before its contacts are known, by index in the elimination order.
+/// They are the rates at which the displacements change [m/s]. Begins a long step if the body is in none. Returns false
+/// if the matrix of the long step cannot be factored.
 bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                        const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                        std::span<Vec3> out);
-/// Sets a sleeping body to the start of a long step. The contacts of this step then use the matrix of the long step
-/// with LongStep::weight = 1.
+/// Makes a sleeping body ready for a long step that starts with this short step. Contacts of this short step then use
+/// the matrix of the long step with LongStep::weight = 1.
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff);
 
 /// Computes displacements and velocities at the end of the short step. If the long step ends with this short step, the
 /// next long step starts from these values. `contact_velocity`: node velocities that the contacts of this step add, by
-/// index in the elimination order [m/s]. Returns the damped energy without the jump of energy at a change to large
-/// strain [J].
+/// index in the elimination order [m/s]. Returns the damped energy [J]. It excludes the change of energy that a change
+/// to large strain at the end of the step causes (become_large()).
 Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                          const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> contact_velocity,
                          const ImplicitStrains& out);

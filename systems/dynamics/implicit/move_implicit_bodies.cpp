@@ -35,6 +35,7 @@ bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> vel
 }
 
 /// Copies the present moments, axes, rotations and strain flags of all bodies to the columns for the end of the step.
+/// Steps at large strain then overwrite these values; other bodies keep them.
 void keep_spins(const ImplicitBodies& bodies, const ImplicitSpins& spins, const ImplicitStrains& out) {
     std::ranges::copy(bodies.large, out.large_next.begin());
     std::ranges::copy(spins.moments, out.moments_next.begin());
@@ -245,8 +246,8 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             damped += (to_mesh * contact[n]).dot(before + during) / 2;
             if (!loads.load.empty()) {
                 const Vec3 load = to_mesh * loads.load[body.first_node + n];
-                // Work of the load in the sense of the reported balance [J]. It is the work over the displacement of
-                // the step, corrected because reported velocities belong to a slightly different time than positions.
+                // Work of the load as the reported energy balance counts it [J]: the work over the displacement of the
+                // step, corrected because reported velocities belong to a slightly different time than positions.
                 damped += h * load.dot(during - (after - before) / 2) + (loads.kick - h) * load.dot(before);
             }
             damped -= body.stiff.mass(k) / 2 * (after - before).dot(after + before);

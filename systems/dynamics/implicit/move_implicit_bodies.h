@@ -91,8 +91,8 @@ struct LongStepTimes {
     bool ends = false;    // true if the long step ends with this short step
 };
 
-/// Step lengths, and the factor theta (1/2 to 1) on the elastic force at the end of a step. The factor on the elastic
-/// force at the start is 1 - theta.
+/// Step lengths, and the factor theta (1/2 to 1). The elastic force in a step is theta times the force at the end of
+/// the step plus 1 - theta times the force at its start.
 struct ImplicitTimes : LongStepTimes {
     Real h = 0;  // [s]
     Real theta = 1;
@@ -108,7 +108,8 @@ struct ImplicitTimes : LongStepTimes {
 struct ImplicitLoads {
     std::span<const Vec3> load;  // applied force by node; empty if there are no applied forces [N]
     Vec3 gravity;                // accelerates only nodes of held bodies: the frames of free bodies fall [m/s^2]
-    // Time for which loads act on explicit and rigid bodies. On implicit bodies they act for the complete step [s].
+    // Time for which loads act on explicit and rigid bodies: the force interval of docs/methods/time_stepping.md 1.5.
+    // On implicit bodies loads act for the complete step [s].
     Real kick;
 
     static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced,
@@ -151,9 +152,11 @@ struct ImplicitKicks {
 };
 
 /// Computes out.velocity_next, the velocities with which the node displacements change in the step, in the frame of the
-/// mesh. They are A^-1 P (M w + theta h (Q^T f - K u)) at small strain (symbols: docs/methods/implicit_bodies.md 1, 2),
-/// or the result of Newton's method at large strain. Adds these velocities to the node velocities that
-/// kick_rigid_bodies has computed from the motion of the frames. Computes missing matrix factors for the step length.
+/// mesh. At small strain they are A^-1 P (M w + theta h (Q^T f - K u)): displacements u, velocities w before the step,
+/// loads f, masses M, stiffness K, rotation Q of the frame, matrix A of the step, and P, which removes rigid motion
+/// (docs/methods/implicit_bodies.md 2). At large strain they are the result of Newton's method. Adds these velocities
+/// to the node velocities that kick_rigid_bodies has computed from the motion of the frames. Computes missing matrix
+/// factors for the step length.
 ///
 /// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step; the
 /// velocities of its held nodes are already set. Parallel over bodies. Returns false if there is no implicit body
@@ -162,7 +165,7 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
                           const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out);
 
-/// Stencils of the points at which impulses of the region solver act: contacts, and points of cables.
+/// Stencils (nodes and weights) of the points at which the region solver applies impulses: contacts and cable points.
 struct TouchedNodes {
     std::span<const Stencil> contact, cable_point;
 
@@ -207,8 +210,8 @@ struct ImplicitStrains {
 /// Result of strain_implicit_bodies for one body.
 struct StrainPart {
     Real damped = 0;  // damped energy minus the work of the moment of the attachment [J]
-    // (h - loads.kick) times weight and loads [N s]: their impulse over the complete step minus their impulse over the
-    // time loads.kick, for which they act on explicit and rigid bodies.
+    // Impulse of weight and loads over the complete step of length h, minus their impulse over the time loads.kick
+    // [N s]. The balance of momentum counts the impulse over loads.kick elsewhere.
     Vec3 impulse = Vec3::Zero();
 };
 
@@ -220,21 +223,21 @@ struct StrainFindings {
     Index unsolved = no_index;  // first row of BodyTable for which Newton's method failed
 };
 
-/// Computes velocities and displacements at the end of the step. Returns sums over all bodies except ghosts, which
-/// their owners count. Adds the elastic forces on held nodes to `force`, which then contains forces that act for the
-/// time loads.kick. Writes to `hold_moment` the angular impulses by which attachments balance the elastic forces of
-/// held bodies [N m s]. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
+/// Computes velocities and displacements at the end of the step. Returns sums over all bodies except ghosts, which are
+/// counted by the ranks that own them. At held nodes, adds the elastic forces to `force` and rescales the sum to forces
+/// that act for the time loads.kick. Writes to `hold_moment` the angular impulses by which attachments balance the
+/// elastic forces of held bodies [N m s]. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
-/// Advances the long step of every body by the short step that is being committed. Writes ImplicitNodeTable::left when
-/// a long step ends, and sets it to zero for bodies that took an ordinary step.
+/// Advances the long step of every body by the short step that is being committed. When a long step ends, writes to
+/// ImplicitNodeTable::left how its contacts changed the displacements. Writes 0 for bodies that took an ordinary step.
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 
 /// Writes to `out` the displacements that result from the present velocities in the time `seconds`, and all other
-/// columns that ElasticMotion reads.
+/// columns that turn_rigid_bodies reads (ElasticMotion).
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
                            const ImplicitStrains& out);
 

@@ -13,7 +13,8 @@ namespace skerry {
 /// Deformed shape of a body. Entries are in the elimination order of the nodes.
 struct BodyShape {
     std::vector<Vec3> position;  // node positions relative to the centre of mass [m]
-    // Lever arms of the nodes: the angular momentum is the sum of arm x v over the node velocities v [kg m]
+    // Lever arms of the nodes. The angular momentum of the solid is the sum over the nodes of the cross product arm x v
+    // with the node velocity v [kg m].
     std::vector<Vec3> arm;
 
     /// Inertia tensor of the shape about the centre of mass [kg m^2].

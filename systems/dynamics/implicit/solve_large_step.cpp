@@ -34,8 +34,8 @@ public:
         return sum + stiff_.elements().energy(step_.within) + spin_energy();
     }
 
-    /// Computes forces and gradient at the displacements step_.within, and the next Newton direction with the present
-    /// matrix factor. Returns the squared Newton decrement g.A^-1 g, with the gradient g and the matrix A [J].
+    /// Computes the forces at the displacements step_.within, the gradient g of the function, and the next Newton
+    /// direction with the present factor of the matrix A. Returns the squared Newton decrement g.A^-1 g [J].
     Real evaluate() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {
@@ -92,9 +92,9 @@ private:
 };
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
-    // Limits of Newton's method. `close`: bound on the Newton decrement relative to the first one. `rounding`: bound on
-    // the squared decrement relative to the sum of all energies. `slow_decrease`: a new matrix factor is computed if
-    // more than this fraction of the decrement remains after a step.
+    // Limits of Newton's method. It ends when the Newton decrement is at most `close` times its first value, or when
+    // the squared decrement is at most `rounding` times the sum of all energies. A new matrix factor is computed if an
+    // iteration leaves more than the fraction `slow_decrease` of the decrement.
     constexpr Real close = 1e-3, rounding = 1e-13, slow_decrease = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;
@@ -110,9 +110,9 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
     if (!std::isfinite(value) || !factor()) return false;
     Real decrement = objective.evaluate();
     const Real first = decrement;
-    // In a very short step the decrement is below the rounding error of the energies although forces act. The given
-    // velocities are accepted only if the decrement is also small compared with the effect of these forces, because the
-    // reactions of held nodes follow from the change of the velocities.
+    // In a very short step the first decrement can be below the rounding error of the energies although forces act. The
+    // start velocities are accepted only if the decrement is also small compared with the effect of these forces. Else
+    // the reactions of held nodes, which follow from the change of the velocities, would be wrong.
     if (decrement <= rounding * std::min(size, objective.force_energy())) return true;
     for (int k = 0; k < most_steps; ++k) {
         if (!std::isfinite(decrement)) return false;

@@ -120,9 +120,9 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     BodyShape rest{arm_, {}};
     solid_.find_arms(rest);
     inverse_solid_inertia_ = rest.inertia().inverse();
-    // A bar of length l that spins at the angular velocity omega has the energy density rho (omega l)^2 / 24. Its
-    // stress is greatest in the middle, rho (omega l)^2 / 8, so its strain there is three times this energy density
-    // over Young's modulus.
+    // A bar of length l and density rho that spins at the angular velocity omega has the energy density
+    // rho (omega l)^2 / 24. Its stress is greatest in the middle, rho (omega l)^2 / 8. So its strain there is three
+    // times the energy density over Young's modulus. The softest material of the body counts.
     Real volume = 0, least = infinity;
     for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
     for (const Index m : elements.material) {
@@ -200,8 +200,8 @@ bool StiffBody::becomes_large_in_order(std::span<const Vec3> displacement, const
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
     // Fractions of the bounds of becomes_large() below which strain counts as small again. `accuracy_fraction`:
-    // fraction of the bounds on energies and spin. `strain_fraction`: fraction of small_strain, below which strain is
-    // small without a test of energies, because these are mostly rounding errors there.
+    // fraction of the bounds on energies and spin. `strain_fraction`: fraction of small_strain. Below it strain is
+    // small without a test of the energies, because their difference is mostly a rounding error there.
     constexpr Real accuracy_fraction = 0.25, strain_fraction = 0.1;
     if (energy_of_spin(angular_momentum) > accuracy_fraction * stretching_spin_) return false;
     const Displacements at(displacement, node_);
@@ -252,10 +252,10 @@ void StiffBody::set_shape(const Displacements& displacement) {
 }
 
 Mat3 StiffBody::rotate_to_own_frame(std::span<Vec3> displacement) const {
-    // Finds the rotation for which the sum of m X x y is zero, by Newton's method. m are the node masses, X and y the
-    // rest and the present positions relative to the centre of mass, and x is the cross product. A body rotates only
-    // little against its frame in one step, so a few iterations suffice: the error after an angle of 1e-8 rad is about
-    // its square.
+    // Finds by Newton's method the rotation for which the sum of m cross(X, y) over the nodes is zero. m is the mass of
+    // a node, X and y are its rest and present positions relative to the centre of mass. A body rotates only little
+    // against its frame in one step, so a few iterations suffice: after an iteration that rotates by 1e-8 rad, the
+    // error is about the square of this angle.
     constexpr int most = 20;
     constexpr Real rounding = 1e-15;
     Mat3 turn = Mat3::Identity();
@@ -395,8 +395,8 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        // There are at least as many slots as touched nodes. With fewer, the columns of one step would replace each
-        // other, and every step would compute all of them again.
+        // There are at least as many slots for columns as touched nodes. With fewer slots, the columns of one step
+        // would replace each other, and every step would compute all of them again.
         const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
         ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {

@@ -33,12 +33,13 @@ struct NewtonCounts {
 /// State of one step of a body at large strain, by index of the nodes in the elimination order
 /// (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
-    // displacements if nodes stood still in the step, in the frame at the end of the step [m]
+    // displacements at the end of the step if the nodes do not move in it, in the frame at the end of the step [m]
     std::vector<Vec3> carried;
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
-    std::vector<Vec3> force;     // gradient dU/du of the elastic energy and the energy of the spin at `within` [N]
-    std::vector<Vec3> before;  // velocities at the start of the step, without rigid motion, after Coriolis forces [m/s]
+    std::vector<Vec3> force;     // gradient dU/du of U (elastic energy plus energy of the spin) at `within` [N]
+    // velocities at the start of the step without rigid motion, rotated by Coriolis forces [m/s]
+    std::vector<Vec3> before;
     // Newton's method: gradient [N s], search direction [m/s], and the displacements at which forces are computed [m].
     std::vector<Vec3> gradient, direction, within;
     // Angular momentum of a free body in the frame of its mesh; zero for a held body [kg m^2/s].
@@ -60,8 +61,8 @@ struct LargeStep {
 /// (docs/methods/implicit_bodies.md 9).
 struct LongStep {
     Real done = 0;  // elapsed time of the long step; 0 outside of a long step [s]
-    // Time from the start of the long step to the end of this short step, divided by the length of this short step; 0
-    // in an ordinary step.
+    // Time from the start of the long step to the end of this short step, divided by the length of this short step. It
+    // is a factor on the response to contacts. 0 in an ordinary step.
     Real weight = 0;
     bool rests = false;  // true if the body is asleep in this short step
     // Values at the start of the long step:
@@ -97,9 +98,9 @@ public:
               std::span<const Vec3> rest_position, std::span<const std::array<Index, 4>> tetrahedra,
               std::span<const Real> tetrahedron_mass);
 
-    /// Makes the nodes whose `inverse_mass` (by node of the body) is zero held nodes from now on. Impulses do not move
-    /// held nodes, and other nodes deform against them. A body without held nodes is free. The present matrix factor
-    /// remains valid if the set of held nodes is unchanged.
+    /// From now on holds the nodes whose `inverse_mass` (by node of the body) is zero. Impulses do not move held nodes,
+    /// and other nodes deform against them. A body without held nodes is free. The present matrix factor remains valid
+    /// if the set of held nodes is unchanged.
     void hold(std::span<const Real> inverse_mass);
     bool is_held() const { return !held_.empty(); }
 
@@ -117,12 +118,14 @@ public:
     /// True if linear elasticity or the moments of inertia at rest are too inaccurate in this state. `displacement`: by
     /// node of the body [m]. `angular_momentum`: in the frame of the mesh; zero for a held body [kg m^2/s].
     ///
-    /// One of two conditions suffices. First, the spin would stretch a bar by small_strain. Second, |F - 1| exceeds
-    /// small_strain in an element with deformation gradient F, and in addition the energies or the spin are inaccurate.
-    /// The energies are inaccurate if the energies by linear elasticity and by the material laws differ, summed over
-    /// the elements, by more than energy_share of the linear energy. The spin is inaccurate if its energy exceeds
-    /// energy_share of the linear energy, and the spin computed with the inertia of the present shape differs from the
-    /// spin computed with the inertia at rest by more than the fraction small_strain.
+    /// One of two conditions suffices. First, the centrifugal forces of the spin would stretch a bar with the same spin
+    /// energy per volume by the strain small_strain. Second, |F - 1| exceeds small_strain in an element with the
+    /// deformation gradient F, and the energies or the spin are inaccurate.
+    ///
+    /// The energies are inaccurate if the energies of elements by linear elasticity and by the material law differ too
+    /// much: the sum of the absolute differences exceeds energy_share of the linear energy. The spin is inaccurate if
+    /// its energy exceeds energy_share of the linear energy, and the inertia of the present shape gives another spin
+    /// than the inertia at rest, by more than the fraction small_strain.
     ///
     /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
@@ -131,9 +134,10 @@ public:
     /// Variant of becomes_large() for displacements by index in the elimination order. Evaluates elements only if nodes
     /// have moved far enough since the last evaluation for strain to become large.
     bool becomes_large_in_order(std::span<const Vec3> displacement, const Vec3& angular_momentum);
-    /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
-    /// must be below a quarter of the bound in becomes_large(). In addition all strains |F - 1| must be below a tenth
-    /// of small_strain, or the energies and the spin must be accurate by the bounds of becomes_large() divided by four.
+    /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The limits are lower
+    /// than in becomes_large(), so that strain does not change between small and large in every step. The energy of the
+    /// spin must be below a quarter of the limit there. In addition all strains |F - 1| must be below a tenth of
+    /// small_strain, or the energies and the spin must be accurate within a quarter of the limits there.
     bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
     /// Elastic energy [J]: u.K u / 2 for the displacements u, or by the material laws of the elements if strain is
@@ -144,8 +148,8 @@ public:
     void remove_rigid_motion(std::span<Vec3> velocity) const;
     /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
-    /// Sets shape() to the shape with the given displacements. If the matrix of respond() is a tangent, respond()
-    /// removes the rigid-body motion of this shape.
+    /// Sets shape() to the shape with the given displacements. After prepare_tangent(), respond() removes the
+    /// rigid-body motion of this shape from velocities.
     void set_shape(const Displacements& displacement);
     /// Removes momentum and angular momentum from node velocities, for the shape that set_shape() has set. `velocity`:
     /// by index in the elimination order [m/s].
@@ -228,17 +232,17 @@ private:
     Real stretching_spin_ = 0;                   // energy of the spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
     BodyShape shape_;  // set by set_shape()
-    // Inverse of the sum of (|a|^2 1 - a a^T) / m over the nodes, with the lever arm a and the mass m of a node [1/(kg
-    // m^2)].
+    // Inverse of the sum over the nodes of (|a|^2 1 - a a^T) / m, with the lever arm a and the mass m of the node
+    // [1/(kg m^2)].
     Mat3 inverse_arm_inertia_ = Mat3::Zero();
     BlockRows stiffness_, matrix_;
-    // Coefficients of the masses and of the stiffness in the factored matrix; 0 if there is no factor or if it is a
-    // tangent.
+    // Coefficients of the masses and of the stiffness in the factored matrix. 0 if there is no factor, or if a tangent
+    // matrix is factored.
     Real inertia_factor_ = 0, stiffness_factor_ = 0;
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
-    // Velocity responses to the nodal momenta of unit translations (shifts_) and of unit rotations (turns_), by index
+    // Velocities that respond to the nodal momenta of unit translations (shifts_) and unit rotations (turns_), by index
     // in the elimination order.
     std::vector<Mat3> shifts_, turns_;
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.

@@ -6,8 +6,8 @@ namespace skerry {
 
 namespace {
 
-/// Velocity of one body at the point of a joint block before the step plus its velocity after the step [m/s]. For a
-/// block of rotations: angular velocity before plus angular velocity after the step [rad/s].
+/// Twice the mean velocity of a body in this step: the sum of its velocities before and after the step, at the point of
+/// a joint block [m/s]. For a block of rotations: the sum of its angular velocities before and after the step [rad/s].
 Vec3 twice_mean(const JointWorkInputs& joints, const JointBlock& block, Index body) {
     const auto r = static_cast<std::size_t>(body);
     const Vec3 angular = 2 * joints.angular_momentum[r] + joints.moment_kick[r] + joints.contact_moment[r];

@@ -45,7 +45,8 @@ struct JointWorkInputs {
 };
 
 /// Sums the work of joints, and the impulses that joints transmit from the world and from held bodies. A joint that
-/// moves a ghost does not count, because the owner of the ghost counts it. Sequential, in block order.
+/// moves a ghost (copy of a body of another rank) does not count, because the owner of the ghost counts it. Sequential,
+/// in block order.
 JointMeasures measure_joints(const JointWorkInputs& joints);
 
 }  // namespace skerry

@@ -17,8 +17,8 @@ Real angle_between(const Mat3& first, const Mat3& second) {
     return std::atan2(first.col(0).dot(second.col(1)), first.col(0).dot(second.col(0)));
 }
 
-/// Rotation vector of the first frame relative to the second, in axes of the second frame [rad]. For a hinge it is
-/// replaced by the cross product of the two hinge axes, so that a rotation about the hinge is no error.
+/// Rotation vector of the first frame relative to the second, in axes of the second frame [rad]. For a hinge, the cross
+/// product of the two hinge axes is used instead, because a rotation about the hinge is no error.
 Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
     if (kind != JointKind::hinge) return second.transpose() * rotation_vector(first * second.transpose());
     return second.transpose() * second.col(2).cross(first.col(2));
@@ -47,11 +47,11 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
     return axis;
 }
 
-/// Vector from the point of joint `j` to the point of its equations, along the axes of the second frame [m]. The
-/// relative velocity of two bodies is the same at all points if they cannot rotate relative to each other, and at all
-/// points of the axis if a hinge joins them. So the equations may use any such point. They use the one nearest to the
-/// centre of mass, because velocity and spin are coupled least there. If both bodies move, the mean of their centres of
-/// mass is used, weighted by the sums of their inverse principal moments of inertia.
+/// Vector from the point of joint `j` to the point at which its equations hold, along the axes of the second frame [m].
+/// Such a point may lie anywhere if the two bodies cannot rotate relative to each other, and anywhere on the axis of a
+/// hinge: their relative velocity is equal at all these points. The point nearest to the centre of mass is used,
+/// because velocity and spin are coupled least there. If both bodies move, the mean of their centres of mass is used,
+/// weighted by the sums of their inverse principal moments of inertia.
 Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first, const JointPlace& second) {
     if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
     Vec3 sum = Vec3::Zero();
@@ -67,8 +67,8 @@ Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first,
     return joints.kind[j] == JointKind::hinge ? Vec3(0, 0, shift.z()) : shift;
 }
 
-/// Block of joint `j` in a mimic equation, which couples the coordinates of two joints (MimicShare), and the coordinate
-/// of joint `j`.
+/// Block of joint `j` in a mimic equation, which couples the coordinates of two joints (MimicShare). `coordinate`:
+/// angle or displacement of joint `j`.
 struct MimicAxis {
     JointBlock block;
     Real coordinate;

@@ -82,8 +82,8 @@ struct JointInputs {
         if (row == no_index || holder[static_cast<std::size_t>(row)] != no_index) return no_index;
         return body_nodes[static_cast<std::size_t>(body)].begin;
     }
-    /// True if each body of joint `j` is asleep, held by an attachment, or the world. Always false while no body at all
-    /// is asleep.
+    /// True if each body of joint `j` is asleep, held by an attachment, or the world. Always false while no body is
+    /// asleep, because body_asleep is then empty.
     bool rests(std::size_t j) const {
         const auto is_out = [&](Index body) {
             return moving_node(body) == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
@@ -104,9 +104,9 @@ struct JointInputs {
 /// of joints. Full rotations of a hinge are counted: the result is the angle nearest to `before`.
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
 
-/// Writes the constraint blocks of all joints with a moving body, for the step of length `h` that starts at time `t`.
-/// The impulses of the last step serve as the warm start. `kick`: time for which forces act, including the forces of
-/// motors [s]. Returns false if there is no joint (skipped).
+/// Writes the constraint blocks (three equations each) of all joints with a moving body, for the step of length `h`
+/// that starts at time `t`. The impulses of the last step serve as the warm start of the solver. `kick`: time for which
+/// forces act, including the forces of motors [s]. Returns false if there is no joint (skipped).
 bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointBlockTable& blocks);
 
 /// Marks the bodies of joints whose motor has a target that changes in this step. Returns false if no target changes.
@@ -132,7 +132,8 @@ struct JointMemory {
 };
 
 /// Stores the coordinates and impulses of the joints for the next step, and the time `kick` for which the impulses
-/// acted [s]. Joints that rest keep their old values. Returns false if there is no joint (skipped).
+/// acted [s]. Joints whose bodies all rest (JointInputs::rests) keep their old values. Returns false if there is no
+/// joint (skipped).
 bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out);
 
 }  // namespace skerry

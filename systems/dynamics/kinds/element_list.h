@@ -61,17 +61,18 @@ struct MaterialZone {
 /// jumps at an interface and must not be averaged across it (docs/methods/elasticity.md 7.6).
 ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones);
 
-/// Limit on the volume of a sliver, as a fraction of the mean volume of the tetrahedra around a corner. A tetrahedron
-/// is a sliver if it is below this limit at all its corners. No step is shortened to keep a sliver from inverting
-/// (docs/methods/time_stepping.md 4.2).
+/// Upper limit on the volume of a sliver, as a fraction of the mean volume of the tetrahedra around a corner. A
+/// tetrahedron is a sliver if its volume is below this limit at all its corners. No step is shortened to keep a sliver
+/// from inverting (docs/methods/time_stepping.md 4.2).
 inline constexpr Real sliver_volume = 0.05;
 
 /// For each tetrahedron: 1 if the tetrahedron is a sliver, else 0.
 std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
 
-/// Limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of all
-/// tetrahedra of the mesh. A tetrahedron below this limit has little effect on the smoothed F around its edges and
-/// nodes, so the smoothed elements hardly resist its inversion (docs/methods/elasticity.md 7.7).
+/// Upper limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of
+/// all tetrahedra of the mesh. A tetrahedron below this limit has little effect on the mean deformation gradients of
+/// the elements around its edges and nodes. So these elements hardly resist its inversion (docs/methods/elasticity.md
+/// 7.7).
 inline constexpr Real guarded_volume = 0.5;
 
 /// Adds an inversion barrier (guard) for every small tetrahedron in the zones of smoothed elements, except slivers.
@@ -87,15 +88,15 @@ ElementKind resolved(ElementKind kind, Real poisson_ratio);
 /// Makes every tetrahedron an element of constant strain. These elements are the stiffest kind.
 void add_tetrahedron_elements(const RestMesh& mesh, ElementList& list);
 
-/// Makes every edge an element. F of the element is the mean over the tetrahedra around the edge. Each of these
-/// tetrahedra adds a sixth of its volume to the element (Liu, Nguyen-Thoi, Vu-Do, Lam: An edge-based smoothed finite
-/// element method, 2009).
+/// Makes every edge an element. Its deformation gradient F is the mean over the tetrahedra around the edge. Each of
+/// these tetrahedra adds a sixth of its volume to the element (Liu, Nguyen-Thoi, Vu-Do, Lam: An edge-based smoothed
+/// finite element method, 2009).
 void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list);
 
-/// Makes every node an element. F of the element is the mean over the tetrahedra around the node. Each of these
-/// tetrahedra adds a quarter of its volume to the element. Such elements are too soft for the whole stress, but right
-/// for its volumetric part (selective smoothing: Nguyen-Thoi, Liu, Lam, Zhang: A face-based smoothed finite element
-/// method, 2009, 5).
+/// Makes every node an element. Its deformation gradient F is the mean over the tetrahedra around the node. Each of
+/// these tetrahedra adds a quarter of its volume to the element. Such elements are too soft for the whole stress, but
+/// right for its volumetric part (selective smoothing: Nguyen-Thoi, Liu, Lam, Zhang: A face-based smoothed finite
+/// element method, 2009, 5).
 void add_node_elements(const RestMesh& mesh, ElementPart part, ElementList& list);
 
 }  // namespace skerry

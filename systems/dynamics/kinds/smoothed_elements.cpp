@@ -1,6 +1,7 @@
-// Elements that average F over several tetrahedra. Each tetrahedron e contributes a fraction w of its volume V_e to the
-// element. The element then has the volume W = sum_e w V_e, and its node k has the gradient g_k = sum_e (w V_e / W)
-// g_ek, with the gradient g_ek of tetrahedron e at node k (docs/methods/elasticity.md 7).
+// Elements that average the deformation gradient F over several tetrahedra. Each tetrahedron e contributes a fraction w
+// of its volume V_e to the element. The element then has the volume W = sum_e w V_e, and its node k has the shape
+// gradient g_k = sum_e (w V_e / W) g_ek, where g_ek is the shape gradient of tetrahedron e at node k
+// (docs/methods/elasticity.md 7).
 #include <algorithm>
 #include <array>
 
@@ -51,8 +52,8 @@ struct Gradients {
     }
 
     /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding errors leave about
-    /// 1e-16 of a gradient g. This remainder moves nothing, but would count in full in the bound on the step, which
-    /// contains g g^T / |g|^2 (stiffness_share.cpp).
+    /// 1e-16 of a gradient g. This remainder causes no noticeable force. But the bound on the step contains g g^T /
+    /// |g|^2 (stiffness_share.cpp), in which a remainder counts as much as a full gradient.
     void drop_zero_gradients() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;

@@ -25,7 +25,8 @@ void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
 }
 
 /// Drift in a step in which contacts push nodes out of an overlap: moves positions by the velocities and push
-/// velocities. Then clears push_out, but only in blocks with a pushed node: in most blocks it is already zero.
+/// velocities. Then clears push_out in blocks with a pushed node. In all other blocks, which are the majority, push_out
+/// is already zero.
 void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_out, std::span<Vec3> position) {
     const Real *v = velocity.data()->data(), *p = push_out.data()->data();
     Real* x = position.data()->data();

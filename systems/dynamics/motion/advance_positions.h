@@ -49,8 +49,8 @@ struct AdvanceOutputs {
 };
 
 /// Sets position += h (velocity_next + push_out), velocity = velocity_next and push_out = 0, except for nodes of
-/// sleeping bodies. Also computes the greatest squared distance of the nodes of each block from their displacement
-/// origins, which move with the frame of the body, for measure_displacement. Parallel over node blocks.
+/// sleeping bodies. Also computes, for measure_displacement, the greatest squared distance of the nodes of each block
+/// from their displacement origins. These origins move with the frame of the body. Parallel over node blocks.
 void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, const AdvanceOutputs& out);
 
 }  // namespace skerry

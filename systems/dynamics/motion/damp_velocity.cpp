@@ -98,14 +98,14 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
 }
 
 /// Angular velocity omega of a body's rigid motion. It solves (tr(S) I - S) omega = L with the unit matrix I, the
-/// angular momentum L about the present positions x, and S = sum m y x^T over nodes of mass m with the earlier
-/// positions y. The left side is the sum of m x cross (omega cross y), the angular momentum of a rotation. If all nodes
-/// are on one line, omega has no component along this line.
+/// angular momentum L, and S = sum m y x^T over nodes of mass m. L has the present positions x as moment arms; y are
+/// the positions at the time of the velocities. The left side is the sum of m x cross (omega cross y), the angular
+/// momentum of a rotation. If all nodes are on one line, omega has no component along this line.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;
-    // Least ratio of the determinant to the cube of the mean moment of inertia for which the inverse is used. The
-    // inverse then loses at most about six of 16 digits; for most bodies it loses none.
+    // The inverse is used if the ratio of the determinant to the cube of the mean moment of inertia exceeds this limit.
+    // It then loses at most about six of 16 digits; for most bodies it loses none.
     constexpr Real well_shaped = 1e-6;
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
     const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -144,8 +144,9 @@ void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* positi
         next[3 * n] -= fraction * ex;
         next[3 * n + 1] -= fraction * ey;
         next[3 * n + 2] -= fraction * ez;
-        // The removed energy is the difference of m v^2/2. It cannot be computed from the deformation velocity alone,
-        // which is not quite orthogonal to the rigid motion if positions and velocities belong to different times.
+        // The removed energy is the difference of the kinetic energies m v^2/2 without and with damping. It cannot be
+        // computed from the deformation velocity alone: that velocity is not quite orthogonal to the rigid motion if
+        // positions and velocities belong to different times.
         work[n] = mass[n] * fraction * (ex * (vx - half * ex) + (ey * (vy - half * ey) + ez * (vz - half * ez)));
     }
 }

@@ -51,15 +51,16 @@ struct DampingInputs {
 };
 
 /// Removes the fraction 1 - exp(-damping kick) of the deformation velocity v - v_rigid from velocity_next. `velocity`
-/// is v at the start of the step, and not the predicted velocity: under load the prediction is not zero even for a body
+/// is v at the start of the step. The predicted velocity is not used for v: under load it is not zero even for a body
 /// at rest, and damping must not act on such a body. `kick`: time between `velocity` and velocity_next [s].
-/// `dissipated`: removed kinetic energy, without that of ghosts [J].
+/// `dissipated`: removed kinetic energy [J], without that of ghosts (copies of bodies of other ranks).
 ///
-/// Damps every body with damping > 0 that is not idle, not in unstrained flight and not in RigidBodyTable. A body with
-/// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and
-/// angular momentum of the body, at the node positions of the time `lag` ago, to which the velocities belong. So a body
-/// that rotates with constant centrifugal stretch has no deformation velocity. The moment arms of the angular momentum
-/// are the present positions, so that damping leaves it unchanged at these positions.
+/// Damps every body with damping > 0 that is not idle, not in unstrained flight (translation without strain) and not in
+/// RigidBodyTable. A body with pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid
+/// motion with the momentum and angular momentum of the body. It is taken at the earlier node positions, `lag` ago, to
+/// which the velocities belong. So a body that rotates with constant centrifugal stretch has no deformation velocity.
+/// The moment arms of the angular momentum are the present positions, so that damping leaves it unchanged at these
+/// positions.
 ///
 /// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,

@@ -48,12 +48,12 @@ void for_each_node(const Stencil& stencil, auto&& visit) {
         if (stencil.weight[a] != 0) visit(static_cast<std::size_t>(stencil.node[a]), stencil.weight[a]);
 }
 
-/// True if motion across the directions along which nodes are held can change the gap of contact `c`. Always true for a
-/// contact without held nodes.
+/// True if the gap of contact `c` can change while its nodes move only perpendicular to the directions along which they
+/// are held. Always true for a contact without held nodes.
 bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts, std::size_t c,
                       std::span<const HeldRows::Node> node) {
-    // Least share of the node mobility along the normal that counts. If the held directions leave less, the gap cannot
-    // change.
+    // Lower limit on the share of the mobility (inverse mass) along the normal that the held directions leave to the
+    // nodes. Below this limit the gap counts as unable to change.
     constexpr Real least_share = 1e-6;
     Real all = 0, left = 0;
     for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {
@@ -64,8 +64,8 @@ bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts
     return left > least_share * all;
 }
 
-/// Key of the row for one held direction of an entry. It is greater than all keys of contacts and ties, because
-/// ContactTable is in key order and these rows are its last.
+/// Key of the row for one held direction of an entry. ContactTable is in key order and these rows are its last, so the
+/// key is greater than all keys of contacts and ties.
 ContactKey key_of(const HeldDirection& held) {
     return {~std::uint64_t{0}, 3 * static_cast<std::uint64_t>(held.entry) + static_cast<std::uint64_t>(held.column)};
 }
@@ -84,10 +84,10 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         held_impulse[held.entry] += impulse * held.direction;
         sum.impulse += impulse * held.direction;
         sum.flow += std::abs(impulse);
-        // The work is the change of kinetic energy minus the work of the other forces. The energy changes by mass
-        // gained (held.speed - gained / 2). The other forces have the impulse mass gained - impulse. Their work is
-        // counted at the end velocity, or with leapfrog (lag = 0) at the mean velocity, and for gravity and loads over
-        // h instead of kick (measure_work).
+        // The work of the holding force is the change of kinetic energy, mass * gained * (held.speed - gained / 2),
+        // minus the work of all other forces. Their impulse is mass * gained - impulse. Their work is counted at the
+        // end velocity, or with leapfrog (lag = 0) at the mean velocity. For gravity and loads it is counted over h
+        // instead of kick (measure_work).
         const Real during = lag == 0 ? held.speed - gained / 2 : held.speed;
         sum.work += impulse * during;
         if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;
@@ -161,8 +161,8 @@ ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec
         push_out[held.node] -= held.direction.dot(push_out[held.node]) * held.direction;
         const Real before = held.direction.dot(velocity_next[held.node]);
         const Real impulse = inputs.mass[held.node] * (held.speed - before);
-        // The impulse times the inverse mass would leave rounding errors, which move a node that touches a plane
-        // through the plane.
+        // The velocity is set directly. The impulse times the inverse mass would leave rounding errors, which could
+        // move a node that touches a plane through the plane.
         velocity_next[held.node] += (held.speed - before) * held.direction;
         held_impulse[held.entry] += impulse * held.direction;
         sum.impulse += impulse * held.direction;

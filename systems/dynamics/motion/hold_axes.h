@@ -52,35 +52,36 @@ struct AxisHoldInputs {
     }
 };
 
-/// Gives nodes that are held along single directions the prescribed velocities along these directions. The prescribed
-/// velocity leads to the position of the attachment at the end of the step, as in drive_nodes. Writes the impulses by
-/// entry of AttachmentTable::node, zero for nodes that are held completely [N s]. Returns the sum and the work of these
-/// impulses, without those on ghosts. The work is measured as in measure_work, which explains `h`, `kick` and `lag`.
-/// Nodes of sleeping bodies are left out. Sequential.
+/// Gives nodes that are held along single directions the prescribed velocities along these directions. With the
+/// prescribed velocity a node follows its attachment: at the end of the step it is at the position that the pose of the
+/// attachment gives it, as in drive_nodes. Writes the impulses by entry of AttachmentTable::node, zero for nodes that
+/// are held completely [N s]. Returns the sum and the work of these impulses, without those on ghosts (copies of bodies
+/// of other ranks). The work is measured as in measure_work, which explains `h`, `kick` and `lag`. Nodes of sleeping
+/// bodies are left out. Sequential.
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse);
 
-/// Rows of the contact problem that hold nodes along single directions. While regions are solved, they are the last
-/// rows of ContactTable.
+/// Rows of the contact problem that hold nodes along single directions. While the contact regions are solved, they are
+/// the last rows of ContactTable.
 struct HeldRows {
     struct Node {
         Mat3 held = Mat3::Zero();     // projection onto the directions along which attachments hold the node
         Vec3 impulse = Vec3::Zero();  // sum of the warm-start impulses of contacts at the node [N s]
         bool in_region = false;       // true if a contact, tie or cable can move the node
     };
-    Column<Index> entry;  // for each held row, in their order: row of AttachmentTable::node
+    Column<Index> entry;  // for each appended row, in order: row of AttachmentTable::node
     Column<Node> node;    // working memory: by row of NodeTable
 };
 
 /// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move: one row for each held
-/// direction of such a node. Each row demands the prescribed velocity along its direction. A contact requests no rows
-/// if only motion along held directions can change its gap, because no impulses satisfy both the contact and the rows.
+/// direction of such a node. Each row demands the prescribed velocity along its direction. A contact is not considered
+/// if only motion along held directions can change its gap: no impulses could satisfy both the contact and the rows.
 /// Sequential.
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
                        HeldRows& rows);
 
-/// Takes the rows of prepare_held_rows() out of the contacts after the solve, and adds their impulses to
-/// `held_impulse`. Returns the sum and the work of the impulses. Sequential.
+/// Removes the rows that prepare_held_rows() has appended to the contacts, after the solve, and adds their impulses to
+/// `held_impulse`. Returns the sum and the work of these impulses. Sequential.
 ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> velocity_next, ContactTable& contacts,
                             const HeldRows& rows, std::span<Vec3> held_impulse);
 

@@ -1,5 +1,5 @@
 // Displacement of each body in its moving frame, and its travel, which is the sum of the changes of displacement. Both
-// limit how long results of the collision stages remain valid.
+// values limit how long results of the collision stages remain valid.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ struct DisplacementInputs {
 
 struct DisplacementOutputs {
     std::span<Vec3> origin;  // by node: position when the displacement of its body was last reset to zero [m]
-    // Flag of each body, or empty; 1: set the displacement of the body to zero and clear the flag.
+    // Flag of each body, or empty. 1: set the displacement of the body to zero and clear the flag.
     std::span<std::uint8_t> rebase;
     std::span<MovingFrame> frame;  // BodyTable
     std::span<Real> frame_speed, displacement, travel;

@@ -23,7 +23,8 @@ struct KickInputs {
     std::span<const Vec3> load = {};  // applied force; empty if no node has one [N]
     // Column of BodyTable; empty if no body is idle. Idle bodies (asleep, or led by another rank) are skipped.
     std::span<const std::uint8_t> body_idle = {};
-    // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty if no body is unstrained.
+    // Column of BodyTable: nonzero for an unstrained body (in translation without strain), whose elements exert no
+    // force. Empty if no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};
 
     /// `forced`: true if the world has force elements. `any_idle`: true if some body is idle.
@@ -48,9 +49,9 @@ struct KickInputs {
 /// summed in a fixed order, plus mass times gravity plus load. `kick`: time for which forces act in this step [s].
 ///
 /// Held nodes (inverse mass 0) keep their velocity. F is written to `force` for held nodes only; the holding force is
-/// the opposite of F. To store F of all nodes and to read it again would take as long as the kick itself, so one pass
-/// does everything. If all nodes of an unstrained body without loads and held nodes have one velocity, their new
-/// velocities are bitwise equal too (find_unstrained.h). Parallel over node blocks.
+/// the opposite of F. One pass sums the forces and updates the velocities, because storing F of all nodes and reading
+/// it again would take as long as the update. If all nodes of an unstrained body without loads and held nodes have one
+/// velocity, their new velocities are bitwise equal too (find_unstrained.h). Parallel over node blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

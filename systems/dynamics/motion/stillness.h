@@ -9,12 +9,13 @@ namespace skerry {
 
 /// Limits for a still body. They are used unless the user sets a sleep speed.
 namespace own_sleep_limits {
-/// Limit of the speed of all nodes, as a fraction of sqrt(gravity times the mean edge).
+/// Upper limit of the speed of all nodes, as a fraction of sqrt(gravity times the mean edge).
 inline constexpr Real speed = 0.01;
-/// Limit of the drift, the displacement of a node in half of the sleep time, as a fraction of the mean edge.
+/// Upper limit of the drift, which is the largest displacement of a node in half of the sleep time, as a fraction of
+/// the mean edge.
 inline constexpr Real drift = 3e-3;
-/// Limit of the drift relative to the drift in the previous half of the sleep time. Bodies that begin to slide, fall or
-/// buckle exceed it.
+/// Upper limit of the ratio of the drift to the drift in the previous half of the sleep time. Bodies that begin to
+/// slide, fall or buckle exceed it.
 inline constexpr Real growth = 2;
 /// Noise level of displacements, as a fraction of the mean edge. The limits of growing drift, steady motion and change
 /// of shape do not apply below this level.

@@ -71,8 +71,8 @@ struct PressInputs {
 /// because it leaves out the weight of sleeping bodies. If no impulses are stored, every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes a body if it is marked in `pressed` or `driven`, if one of its contacts in this step has an impulse or a
-/// negative gap, if BodyLinks connects it to an awake body, or if an attachment moves it. Contacts between sleeping
+/// Wakes a body in each of these cases: it is marked in `pressed` or `driven`; one of its contacts in this step has an
+/// impulse or a negative gap; BodyLinks connects it to an awake body; an attachment moves it. Contacts between sleeping
 /// bodies are not searched, so each contact has an awake body or a moving collider. Returns false if no body was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
@@ -177,8 +177,8 @@ struct RestOutputs {
     }
 };
 
-/// Energy and momentum removed from the bodies that fall asleep in this step, without ghosts. `bodies`: number of all
-/// bodies that fall asleep, with ghosts.
+/// Energy and momentum removed from the bodies that fall asleep in this step, without ghosts (copies of bodies of other
+/// ranks). `bodies`: number of all bodies that fall asleep, with ghosts.
 struct SleepLosses {
     Real energy = 0;               // kinetic energy [J]
     Vec3 momentum = Vec3::Zero();  // [kg m/s]

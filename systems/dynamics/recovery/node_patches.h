@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Kind of a node in the recovery of fields. `inner`: not on the surface. `face`: on a smooth part of the surface.
-/// `other`: at an edge or corner of the surface, or between two materials.
+/// Kind of a node, which decides how its stress and strain are recovered. `inner`: not on the surface. `face`: on a
+/// smooth part of the surface. `other`: at an edge or corner of the surface, or between two materials.
 enum class NodeKind : std::uint8_t { inner, face, other };
 
 /// Tetrahedra and surface triangles around the nodes of a body. All lists are ascending. Kinds of nodes are found when
@@ -42,7 +42,8 @@ public:
     Real node_volume(Index node, Index material) const;
     /// Nodes of the kind `inner` in the tetrahedra around a node.
     std::vector<Index> inner_neighbours(Index node);
-    /// Nodes of the kinds `inner` and `face` within two rings of tetrahedra of one material around a node.
+    /// Nodes whose values are extrapolated to a node of the kind `other`: all nodes of the kinds `inner` and `face`
+    /// within two rings of tetrahedra of one material around it.
     std::vector<Index> donors(Index node, Index material);
 
 private:
@@ -56,8 +57,9 @@ private:
     std::vector<std::optional<NodeKind>> kind_;   // by node; empty until first used
 };
 
-/// Blocks with elements that cover at least one of the chosen tetrahedra. A *place* p stands for lane p % element_lanes
-/// of the block `block[p / element_lanes]`.
+/// Blocks with elements that cover at least one of the chosen tetrahedra. An element covers the tetrahedra over which
+/// its deformation gradient is averaged. A *place* p is the number of an element: lane p % element_lanes of the block
+/// `block[p / element_lanes]`.
 struct ElementsNear {
     std::vector<Index> block;  // block numbers, counted from the first block of the body, ascending
     Ragged<Index> covering;    // by tetrahedron: places of the elements that cover it

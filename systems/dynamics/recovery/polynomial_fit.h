@@ -13,9 +13,9 @@ namespace skerry {
 /// Numbers of terms of polynomials of degree 1 and 2 in three variables.
 inline constexpr int linear_terms = 4, quadratic_terms = 10;
 
-/// Weighted least-squares fit of a linear or quadratic polynomial to samples, evaluated at the origin. Terms that the
-/// samples do not determine are dropped, from the highest to the lowest degree. So a linear field is reproduced
-/// wherever the samples determine it.
+/// Weighted least-squares fit of a linear or quadratic polynomial to samples, evaluated at the origin. If the samples
+/// do not determine all terms, terms of higher degree are dropped first. So a linear field is reproduced wherever the
+/// samples determine it.
 template <int terms>
 class PolynomialFit {
 public:
@@ -25,13 +25,14 @@ public:
         normal_.noalias() += weight * row.transpose() * row;
     }
 
-    /// Returns the row r for which the fitted polynomial has the value sum_i weight_i (r . row_at(offset_i)) sample_i
-    /// at the origin. It is r = N^-1 (1, 0, 0, ...) with the normal matrix N of the fit. Without samples r is zero.
-    /// `rank`: number of terms that were kept; a term that nearly depends on earlier ones is dropped.
+    /// Returns the row r that gives the value of the fitted polynomial at the origin. This value is the sum over the
+    /// samples i of weight_i (r . row_at(offset_i)) sample_i. The row is r = N^-1 (1, 0, 0, ...) with the normal matrix
+    /// N of the fit, or zero without samples. `rank`: number of terms that were kept; a term that nearly depends on
+    /// earlier ones is dropped.
     Eigen::Matrix<Real, 1, terms> row_of_origin(int& rank) const {
-        // Cholesky decomposition, row by row. Elimination of the earlier terms reduces a diagonal entry by the factor
-        // sin^2, where the angle is that between the term and the span of the earlier terms, over all samples. A term
-        // with a smaller sin^2 than `dependent` is dropped.
+        // Cholesky decomposition of N, row by row. The values of a term at all samples form a vector. Elimination of
+        // the earlier terms multiplies the diagonal entry of the term by sin^2 of the angle between this vector and the
+        // span of the earlier ones. If sin^2 is below `dependent`, the term is dropped.
         constexpr Real dependent = 1e-3;
         Eigen::Matrix<Real, terms, terms> lower = Eigen::Matrix<Real, terms, terms>::Zero();
         Eigen::Matrix<Real, terms, 1> value = Eigen::Matrix<Real, terms, 1>::Unit(0);

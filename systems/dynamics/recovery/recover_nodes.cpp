@@ -59,7 +59,7 @@ private:
         return static_cast<std::size_t>(body_.blocks.begin + plan_.block[element / element_lanes]);
     }
 
-    /// For each node that needs it, computes the external force that would balance the elements around the node [N].
+    /// For each node whose force is needed, computes the external force that would balance the elements around it [N].
     void sum_forces() {
         force_.assign(plan_.force_count, Vec3::Zero());
         for (const auto [at, corner, row] : plan_.corners) {
@@ -84,10 +84,10 @@ private:
         return value;
     }
 
-    /// Search for the deformation gradient with a stress that balances the traction at a surface node. The traction is
-    /// the external force on the elements around the node, divided by the surface area. The part of the force that is
-    /// due to weight and inertia is subtracted first. Per volume, this part is taken to be the same as at the inner
-    /// nodes nearby.
+    /// Arguments of the search for the deformation gradient at a surface node, whose stress balances the traction. The
+    /// traction is the external force on the elements around the node, divided by the surface area. The part of the
+    /// force that is due to weight and inertia is subtracted first. This part, divided by the volume of the node, is
+    /// taken to be the same as at the inner nodes nearby.
     SurfaceSearch search_at(std::size_t row) const {
         const auto f = static_cast<std::size_t>(plan_.smooth[row]);
         const RecoveryPlan::Face& face = plan_.faces[f];

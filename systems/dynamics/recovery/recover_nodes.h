@@ -24,8 +24,8 @@ struct NodeFields {
     std::vector<bool> extrapolated;  // true for nodes at edges, corners and interfaces of materials
 };
 
-/// Recovers the fields at the nodes of the plan, in their order. Only elements near these nodes are evaluated, and the
-/// values do not depend on the choice of nodes. `compute_fields`: the kernel element_fields.
+/// Recovers the fields at the nodes of the plan, in their order. Only elements near these nodes are evaluated. The
+/// value at a node does not depend on which other nodes the plan contains. `compute_fields`: the kernel element_fields.
 ///
 /// - Inner node: least-squares fit of the stresses of the elements around the node, quadratic for smoothed elements and
 ///   linear for others. Elements with only the volumetric part of the stress have a linear fit of their own, which is
@@ -33,7 +33,7 @@ struct NodeFields {
 /// - Node of a smooth surface: stress that balances the traction, and agrees with the stretch of the surface.
 /// - Node at an edge, a corner or an interface of materials: linear fit of the values at the nodes within two rings of
 ///   tetrahedra, for each material. The results of the materials are averaged by volume.
-/// - Where too few values determine a fit: mean over the elements around the node.
+/// - Node with too few values around it for a fit: mean over the elements around the node.
 NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) compute_fields);
 
 }  // namespace skerry

@@ -65,7 +65,7 @@ private:
         }
     }
 
-    /// Marks the nodes and tetrahedra on which the value at a node depends.
+    /// Marks the nodes and tetrahedra on which the value at a node depends: nodes in smooth_, tetrahedra in needed_.
     void require(Index n) {
         mark_around(n);
         if (patches_.kind(n) != NodeKind::other) return require_smooth(n);
@@ -105,8 +105,9 @@ private:
         }
     }
 
-    /// Numbers the nodes at which the force of the elements is needed, and lists the element corners at these nodes.
-    /// All tetrahedra around these nodes are marked in needed_, so no corner is missing.
+    /// Numbers the nodes at which the force of the elements is needed: nodes of smooth surfaces and their inner
+    /// neighbours. Lists the element corners at these nodes. All tetrahedra around these nodes are marked in needed_,
+    /// so no corner is missing.
     void list_corners() {
         force_row_.assign(rest_.size(), no_index);
         Index count = 0;
@@ -230,9 +231,9 @@ private:
         append_row<Term>(plan_.volumetric_around, volumetric);
     }
 
-    /// A linear fit to the values of the donors of one material extrapolates to the node. Appends the factors of these
-    /// values, times `share`. If the donors do not suffice,
-    /// the factors of the mean over the elements of this material are appended.
+    /// Extrapolates to a node by a linear fit to the values of the donors of one material: appends the factors of these
+    /// values, times `share`. If there are too few donors for a fit, appends the factors of the mean over the elements
+    /// of this material around the node.
     void extrapolate(Index n, Index material, Real share, std::vector<Term>& donors, std::vector<Term>& strained,
                      std::vector<Term>& volumetric) {
         const std::vector<Index> nodes = patches_.donors(n, material);
@@ -259,7 +260,8 @@ private:
     const RecoveryMesh& body_;
     std::vector<Vec3> rest_;  // m
     NodePatches patches_;
-    std::vector<Index> smooth_;  // by node: row of RecoveryPlan::smooth, 0 before add_smooth; no_index: not needed
+    // by node: its row of RecoveryPlan::smooth, or no_index if this row is not needed; 0 until add_smooth sets the row
+    std::vector<Index> smooth_;
     std::vector<std::uint8_t> needed_;  // by tetrahedron: 1 if the elements that cover it are needed
     ElementsNear near_elements_;
     std::vector<Index> force_row_;  // by node: its row among the nodes whose force is needed, or no_index

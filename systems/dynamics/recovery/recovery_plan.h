@@ -26,8 +26,8 @@ struct RecoveryMesh {
 };
 
 /// Plan of recover_nodes for some nodes of a body. Blocks are counted from the first block of the body, so that a plan
-/// stays valid when the rows of the body move in the tables. A *place* p stands for lane p % element_lanes of the block
-/// `block[p / element_lanes]`. Vectors are in the frame of the element gradients.
+/// stays valid when the rows of the body move in the tables. A *place* p is the number of an element: lane p %
+/// element_lanes of the block `block[p / element_lanes]`. Vectors are in the frame of the element gradients.
 struct RecoveryPlan {
     std::vector<Index> nodes;  // nodes to recover, in the order of the results
     std::vector<Index> block;  // blocks whose elements are needed, ascending
@@ -38,8 +38,9 @@ struct RecoveryPlan {
         Index from;
         Real factor;
     };
-    // Inner nodes, and nodes of a smooth part of the surface. For each one its row of `faces`; or no_index for inner
-    // nodes and for materials that yield. The value is then a sum of values of the elements around the node.
+    // One row for each needed node that is inside the body or on a smooth part of its surface: the row of the node in
+    // `faces`. It is no_index for inner nodes, and for nodes of materials that yield. The value at such a node is a
+    // weighted sum of values of the elements around it.
     std::vector<Index> smooth;
     // For each row of `smooth`: factors of the elements around its node, by place, ascending. For a node without a row
     // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
@@ -50,8 +51,9 @@ struct RecoveryPlan {
     struct Face {
         SurfaceAround around;
         Index element;  // place of one element around the node; gives the material
-        // Volume of the node (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes in the
-        // tetrahedra around it; 0 if there are no inner nodes.
+        // Factor on the sum of the forces at inner nodes, which estimates weight and inertia of the face's node: volume
+        // of the node (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes in the tetrahedra
+        // around it. 0 if there are no inner nodes.
         Real inner_share;
     };
     std::vector<Face> faces;
@@ -68,9 +70,10 @@ struct RecoveryPlan {
     std::size_t force_count = 0;  // number of nodes whose force is needed
 
     // For each of `nodes`: its row of `smooth`, or no_index for a node at an edge, corner or interface of materials.
+    // The value of such a node is extrapolated.
     std::vector<Index> smooth_of;
-    // Terms of the values of nodes with no_index in `smooth_of`. `donors`: from rows of `smooth`. `strained_around`,
-    // `volumetric_around`: from places, only for materials with too few donors for a fit.
+    // Terms of the sums that give the extrapolated values. In `donors`, Term::from is a row of `smooth`. In the other
+    // two columns it is a place; they are used only for materials with too few donors for a fit.
     Ragged<Term> donors, strained_around, volumetric_around;
 };
 

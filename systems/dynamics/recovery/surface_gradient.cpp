@@ -45,16 +45,16 @@ Eigen::Matrix<Real, 3, 2> plane_of(const Vec3& normal) {
 }
 
 constexpr int most_newton_passes = 20;
-/// Newton's method ends when |P N - traction| is at most `newton_accuracy` |P| plus `newton_rounding` times the
-/// modulus.
+/// Newton's method ends when |P N - traction| is at most `newton_accuracy` |P| plus `newton_rounding` times the elastic
+/// modulus, with the stress P and the normal N.
 constexpr Real newton_accuracy = 1e-12, newton_rounding = 16 * std::numeric_limits<Real>::epsilon();
 
 Real modulus_of(const MaterialConstants& material) {
     return 2 * material.shear_modulus + std::abs(material.lame_lambda);
 }
 
-/// Slope d(P N)/db for F = base + b across^T; symbols: SurfaceAround and surface_gradient() in the header. The function
-/// add_stiffness of a material law adds its terms.
+/// Derivative d(P N)/db for F = base + b across^T, with the stress P and the normal N (SurfaceAround in the header).
+/// The function add_stiffness of a material law adds its terms through the member functions.
 struct SlopeTerms {
     LaneVec3<Real8> across, normal;
     LaneMat3<Real8> sum{};
@@ -73,7 +73,8 @@ struct SlopeTerms {
     void add_turned_transpose(const Real8& s, const Matrix& R) {
         add(s, times(R, across), times(R, normal));
     }
-    /// Adds the slope of cof(F) N times s: a change u of b changes cof(F) N by u x F (N x across).
+    /// Adds s times the derivative of cof(F) N by b. A change u of b changes cof(F) N by the cross product of u and
+    /// F w, where w is the cross product of N and `across`.
     void add_cofactor_slope(const Real8& s, const LaneMat3<Real8>& F) {
         const LaneVec3<Real8> w = s * multiply(F, cross(normal, across));
         sum.c0.y -= w.z;
@@ -98,8 +99,8 @@ void set_lane(LaneVec3<Real8>& to, int l, const Vec3& v) {
     to.z[l] = v.z();
 }
 
-/// Newton's method for up to eight nodes of one material. Lanes that have converged do not change. Lanes that do not
-/// converge leave `found` empty.
+/// Newton's method for up to eight nodes of one material, one in each lane. Lanes that have converged do not change.
+/// The entries of `found` stay empty for lanes that do not converge.
 template <class Law>
 void search_lanes(Law law, std::span<const SurfaceSearch> searches, std::span<std::optional<Mat3>> found) {
     const MaterialConstants& material = searches.front().material;
@@ -152,8 +153,8 @@ std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node
 
 SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std::span<const Index> triangles,
                              std::span<const Vec3> rest) {
-    // Least cosine of the angle between a triangle and the mean surface (30 degrees). Two faces whose normals differ by
-    // 60 degrees or more thus form an edge.
+    // Lower limit on the cosine of the angle between a triangle and the mean surface (30 degrees). At a greater angle
+    // the surface has an edge. So two faces whose normals differ by 60 degrees or more always form an edge.
     constexpr Real least_cosine = 0.866;
     const auto corner = [&](Index t, std::size_t k) {
         return static_cast<std::size_t>(surface[static_cast<std::size_t>(t)][k]);

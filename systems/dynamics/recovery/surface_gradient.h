@@ -27,10 +27,10 @@ struct SurfaceAround {
     Vec3 area = Vec3::Zero();
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
-    // Terms of a least-squares fit for a smooth surface: `inverse` and `across`. Among all F with a given product b = F
-    // N, F = stretch inverse + b across^T differs least from the deformation gradients within the triangles. Here
-    // `stretch` is the result of surface_stretch, and `inverse` is the inverse, within the tangent plane, of the sum of
-    // area times projector onto each triangle [1/m^2].
+    // Terms of a least-squares fit for a smooth surface with the normal N: `inverse` and `across`. Many deformation
+    // gradients F have the same product b = F N. Among them F = stretch inverse + b across^T differs least from the
+    // deformation gradients within the triangles. `stretch` is the result of surface_stretch(). `inverse` is an inverse
+    // within the tangent plane: of the sum over the triangles of area times projector onto the triangle [1/m^2].
     Mat3 inverse = Mat3::Zero();
     Vec3 across = Vec3::Zero();
 };
@@ -39,13 +39,14 @@ struct SurfaceAround {
 SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std::span<const Index> triangles,
                              std::span<const Vec3> rest);
 
-/// Sum of area times the deformation gradient within the plane of each triangle [m^2]. `position`: of all nodes [m].
+/// Sum over the triangles of area times deformation gradient within the plane of the triangle [m^2]. `position`: of all
+/// nodes [m].
 Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const Vec3> position);
 
-/// Deformation gradient F for which P(F) N is the traction, with the outward normal N. Among all such F it is the one
-/// that differs least from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `stretch`:
-/// result of surface_stretch. `start`: first guess of F N. The surface must be smooth. Empty if Newton's method finds
-/// no F.
+/// Deformation gradient F for which P(F) N is the traction, with the first Piola-Kirchhoff stress P and the outward
+/// normal N. Among all such F it is the one that differs least from the deformation gradients within the triangles
+/// (docs/methods/elasticity.md 7.9). `stretch`: result of surface_stretch. `start`: first guess of F N. The surface
+/// must be smooth. Empty if Newton's method finds no F.
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
                                      const Mat3& stretch, const Vec3& traction, const Vec3& start);
 

@@ -17,9 +17,9 @@ struct SurfaceSearch {
     Vec3 traction, start;
 };
 
-/// Results of surface_gradient for many nodes. Up to eight consecutive nodes of one material are solved together in the
-/// lanes of a register if its law is linear or stable neo-Hookean. The result of a node does not depend on the other
-/// nodes.
+/// Results of surface_gradient for many nodes. If the law of a material is linear or stable neo-Hookean, up to eight
+/// consecutive nodes of this material are solved together in the lanes of a register. The result of a node does not
+/// depend on the other nodes.
 std::vector<std::optional<Mat3>> surface_gradients(std::span<const SurfaceSearch> searches);
 
 }  // namespace skerry

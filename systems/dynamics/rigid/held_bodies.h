@@ -14,8 +14,8 @@
 namespace skerry {
 
 struct RigidHolds {
-    // Columns of RigidBodyTable: attachment that holds the body, or no_index, and pose of the frame of the mesh in the
-    // frame of this attachment [m].
+    // Columns of RigidBodyTable: the attachment that holds the body, or no_index, and the pose of the body's mesh in
+    // the frame of this attachment [m].
     std::span<const Index> holder;
     std::span<const Vec3> held_position;
     std::span<const Mat3> held_rotation;

@@ -21,9 +21,10 @@ namespace skerry {
 /// the frame of the mesh and the centre of mass of an implicit body move like a rigid body.
 struct RigidBodies {
     std::span<const Index> body;
-    std::span<const Range> body_nodes;          // BodyTable
-    std::span<const Range> body_implicit;       // BodyTable
-    std::span<const Index> body_core_nodes;     // empty if all nodes of round bodies take part in the step
+    std::span<const Range> body_nodes;     // BodyTable
+    std::span<const Range> body_implicit;  // BodyTable
+    // for round bodies (spheres, capsules, cylinders): number of nodes that take part in the step; empty: all nodes do
+    std::span<const Index> body_core_nodes;
     std::span<const std::uint8_t> body_asleep;  // column of BodyTable; empty if no body is asleep
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
@@ -78,7 +79,8 @@ struct ElasticMotion {
     // Columns of RigidBodyTable, used only for implicit bodies. `large`: 1 if the deformation is large.
     std::span<const std::uint8_t> large;
     std::span<const Vec3> moments;
-    std::span<const Mat3> axes, rotation;  // `rotation`: new principal frame to world, start of step
+    // `rotation`: from the principal frame of the new shape to the world, without the rigid rotation of this step
+    std::span<const Mat3> axes, rotation;
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
@@ -121,13 +123,14 @@ struct RigidKicks {
     }
 };
 
-/// Computes the impulse and moment of gravity and loads on each body, and the node velocities with these impulses,
-/// which are the start values for contacts. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// Computes the impulse and angular impulse of gravity and loads on each body, and the node velocities after these
+/// impulses, from which the contact solver starts. Parallel over bodies. Returns false if there is no rigid body
+/// (skipped).
 ///
-/// Gravity and loads act for the force interval `kick`, but on the frames of implicit bodies for the complete step `h`.
-/// Sleeping bodies get no impulse. A held rigid body gets the impulse that moves it with its attachment; drive_nodes
-/// has already set the velocities of its nodes. The frame of a held implicit body has no momentum and no degrees of
-/// freedom.
+/// Gravity and loads act for the force interval `kick` (docs/methods/time_stepping.md 1.5), but on the frames of
+/// implicit bodies for the complete step `h`. Sleeping bodies get no impulse. A held rigid body gets the impulse that
+/// moves it with its attachment; drive_nodes has already set the velocities of its nodes. The frame of a held implicit
+/// body has no momentum, because its motion is prescribed.
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 

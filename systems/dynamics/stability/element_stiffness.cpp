@@ -1,9 +1,9 @@
 // Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K.
 //
 // The nonzero eigenvalues are those of V A, with the volume V and the 9x9 matrix A(Y) = H(Y L^T) L. Y is a 3x3 matrix,
-// H = dP/dF, and L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms, each of
-// which gives a closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows that V
-// lambda_max(A) < c for a given c: c I - V A is positive definite.
+// H = dP/dF, and L L^T = Q is the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each
+// of them gives a closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows whether V
+// lambda_max(A) is below a limit c: then c I - V A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -21,7 +21,7 @@ struct Matrix9 {
     T a[9][9];
 };
 
-/// Those of the eight lanes that belong to register number `part`. Eight lanes fill `kernel_parts` registers. A 9x9
+/// Those of the eight lanes that belong to register number `part`: `kernel_parts` registers hold the eight lanes. A 9x9
 /// matrix is built for one register at a time.
 [[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
     Lanes<Real, element_lanes> all;
@@ -39,8 +39,8 @@ LaneSymmetric<KernelReal> lanes_in(const LaneSymmetric<Real8>& s, std::size_t pa
             lanes_in(s.xy, part), lanes_in(s.yz, part), lanes_in(s.zx, part)};
 }
 
-/// Cholesky factor of Q: lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive
-/// number. This only enlarges Q, so the result stays an upper bound.
+/// Cholesky factor of Q: lower triangular L with L L^T = Q. If rounding makes a pivot too small, it is raised to a
+/// small positive number. This only enlarges Q, so the bound on the frequency stays an upper bound.
 template <class T>
 LaneMat3<T> cholesky(const LaneMat3<T>& Q) {
     const T least = 1e-14 * (Q.c0.x + Q.c1.y + Q.c2.z) + 1e-300;
@@ -96,7 +96,8 @@ public:
     }
 
     /// Adds s d(cof F)/dF to H. Let e_m be column m of F cof(L), and [e]x the matrix of the cross product with e. Block
-    /// (p, q) of the 9x9 matrix A changes by -s [e_m]x for (p, q, m) cyclic, and by s [e_m]x for (q, p, m) cyclic.
+    /// (p, q) of the 9x9 matrix A changes by -s [e_m]x if (p, q, m) is a cyclic permutation of (0, 1, 2), and by s
+    /// [e_m]x if (q, p, m) is one.
     void add_cofactor_slope(const T& s, const LaneMat3<T>& F) {
         const LaneMat3<T> E = multiply(F, cofactor(L_));
         const LaneVec3<T> e[3] = {E.c0, E.c1, E.c2};
@@ -119,10 +120,9 @@ private:
     Matrix9<T>& A_;
 };
 
-/// Adds H = dP/dF of the viscous parts of the stress. Their stress is P = F S, with the second Piola-Kirchhoff stress
-/// S. This H maps X to F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and S are replaced by upper
-/// bounds on their eigenvalues. The bound for F F^T is the mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is
-/// the deviator of F^T F.
+/// Adds H = dP/dF of the viscous stress P = F S, with its second Piola-Kirchhoff stress S. This H maps X to F (2 mu
+/// sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and S are replaced by upper bounds on their eigenvalues. The
+/// bound for F F^T is the mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is the deviator of F^T F.
 template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
@@ -139,9 +139,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Adds the term b (R:X)^2 to the mass form of an element, where R is a rotation and X = Y L^T the displacement
-/// gradient. Without this term the mass form of Y is |Y|^2. With s = R L as a vector of nine entries, R:X = s.Y. So A
-/// becomes D A D, where
+/// Takes account of the additional term b (R:X)^2 of the mass form of an element, where R is a rotation and X = Y L^T
+/// the displacement gradient. Without this term the mass form of Y is |Y|^2. With s = R L as a vector of nine entries,
+/// R:X = s.Y. So A becomes D A D, where
 ///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
@@ -161,9 +161,9 @@ void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>
         for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
 }
 
-/// For each lane of this register: true if all eigenvalues of volume * A are below `limit`. The test is whether limit I
-/// - volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding errors. It ends early if no lane
-/// passes.
+/// For each lane of this register: true if all eigenvalues of volume * A are below `limit`. This holds if limit I -
+/// volume * A has a Cholesky decomposition L D L^T with the diagonal of D above rounding errors. The test ends early if
+/// no lane passes.
 template <class T>
 auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     const T rounding = 1e-12 * limit;
@@ -230,8 +230,8 @@ using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
 /// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high` with
-/// geometric means. `high` must be an upper bound. For an eigenvalue below `low` the bound is close to `low`. Every
-/// lane is bisected by itself, so that the register width changes no bit.
+/// geometric means. `high` must be an upper bound of the eigenvalue. If the eigenvalue is below `low`, the result is
+/// slightly above `low`. Lanes are bisected separately, so that results have the same bits for every register width.
 BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals low, BlockReals high, int halvings) {
     for (std::size_t part = 0; part < kernel_parts; ++part)
         for (int i = 0; i < halvings; ++i) {
@@ -243,8 +243,9 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that the eigenvalue exceeds
-/// `threshold` in some lanes, probably by little. The greatest of these bounds is at most 0.3 % too large.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, if the eigenvalue exceeds `threshold` in some
+/// lanes. It probably does so by little, so limits just above `threshold` are tried first. The greatest of the bounds
+/// is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real threshold) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -268,8 +269,8 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     return bisected(A, volume, least, most, 6);
 }
 
-/// Upper bound on the largest eigenvalue of volume * A in each lane: the least of the limits threshold, 1.1
-/// threshold, 1.21 threshold ... that is above the eigenvalue. The bound is infinite if all limits are below the
+/// Upper bound on the largest eigenvalue of volume * A in each lane: the smallest of the limits threshold, 1.1
+/// threshold, 1.21 threshold ... that exceeds the eigenvalue. The bound is infinite if all limits are below the
 /// eigenvalue.
 BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real threshold) {
     constexpr Real growth = 1.1;
@@ -307,7 +308,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             if (frame) count_in(everywhere(frame->rotation), lanes_in(frame->b, part), L, A[part]);
         }
     });
-    // All lanes of the block are tested together, so that the register width changes no bit.
+    // All lanes of the block are tested together, so that the results have the same bits for every register width.
     bool below = threshold > 0;
     for (std::size_t part = 0; below && part < kernel_parts; ++part)
         below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + threshold));

@@ -1,5 +1,5 @@
-// Rigorous bound on the highest frequency of each element of a block in its present shape (docs/methods/stable_step.md
-// 3, 4).
+// Upper bound on the highest frequency of each element of a block in its present shape. A block is a group of eight
+// elements, one in each lane of a vector (docs/methods/stable_step.md 3, 4).
 #pragma once
 
 #include "components/material_table.h"
@@ -14,12 +14,13 @@ namespace skerry {
 struct ViscousPart {
     ViscousModuli moduli{};
     ViscousStretch<Real8> stretch{};
-    // `strain_share`: number of Maxwell springs that count; one that relaxes within the step counts as a fraction.
-    // `volume_share`: this fraction for the one spring of the bulk viscosity.
+    // `strain_share`: effective number of springs of the Maxwell elements; a spring that relaxes within the step counts
+    // as a fraction of 1. `volume_share`: this fraction for the spring of the bulk viscosity.
     Real8 strain_share = Real8{} + Real{maxwell_count}, volume_share = Real8{} + 1.0;
 };
 
-/// Term b (R:X)^2 of the mass form of an element (frame_masses.h). R is `rotation`, X the gradient of displacements.
+/// Additional term b (R:X)^2 of the mass form of an element (frame_masses.h), with the gradient X of its displacements.
+/// R is `rotation`, which approximates the rotation of the body.
 struct FramePart {
     Mat3 rotation = Mat3::Identity();
     Real8 b{};  // [kg m^2]
@@ -31,15 +32,16 @@ enum class Sharpness {
     bisected,  // the bound is at most 0.3 % too large, but takes twice the time of `trace`
     compared,  // the bound is infinite unless the eigenvalues of all eight lanes are below `threshold`
     // The bound is one of `threshold`, 1.1 `threshold`, 1.21 `threshold` ... and at most 10 % too large. It is infinite
-    // beyond ten times `threshold`.
+    // beyond about ten times `threshold`.
     stepped
 };
 /// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]; 0 in lanes without
 /// volume.
 ///
-/// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M is the diagonal matrix of
-/// the mass shares m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners; or M is the mass form
-/// of `Q` (mass_forms.h). With `frame` the mass form has the additional term of FramePart.
+/// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. There are two kinds of mass
+/// M. If `Q` is the sum of g_a g_a^T / m_a over the corners a, with their gradients g_a and mass shares m_a, M is the
+/// diagonal matrix of the m_a. Otherwise M is the mass form of `Q` (mass_forms.h). With `frame` it has the additional
+/// term of FramePart.
 ///
 /// If the material law has a corotational frame, `q` is the initial guess of the frame and receives the frame found. If
 /// all eight lanes are below `threshold` [1/s^2], all lanes get `threshold` instead, in a tenth of the time.

@@ -22,9 +22,10 @@ struct RelaxationOutputs {
 
 /// Finds the relaxation rates of the Maxwell elements that model the losses of a body. The rates divide a band of
 /// frequencies, from `highest` down to `lowest` / rates_below (relaxation.h). `highest` is the highest frequency of the
-/// body, `lowest` an estimate of its lowest frequency [1/s]. The ratio of the ends of the band is limited to 100 to
-/// 10,000. All elements get the same rates, so that losses depend neither on the position of an element nor on the
-/// number of elements. `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
+/// body, `lowest` an estimate of its lowest frequency [1/s]. If the upper end of the band is less than 100 or more than
+/// 10,000 times its lower end, the lower end is changed. All elements get the same rates, so that losses depend neither
+/// on the position of an element nor on the number of elements. `stiffness_sum`: stiffness sum by node, as in
+/// stable_step(). Sequential.
 void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
                      const RelaxationOutputs& out);

@@ -103,8 +103,8 @@ public:
         return decomposition.is_below({3 * nodes_, 3 * width_, 3, add_rows}, limit);
     }
 
-    /// Computes the entries q and b of all frame masses (frame_masses.h) from an upper bound on the eigenvalues
-    /// [1/s^2].
+    /// Computes the entries q and b of all frame masses (frame_masses.h). `bound`: upper bound on the eigenvalues of
+    /// the matrix [1/s^2].
     void share(Real bound, std::span<FrameMass> mass) const {
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
@@ -118,8 +118,7 @@ public:
     }
 
 private:
-    /// Rest volume [m^3], and moduli times volume [Pa m^3], of the elements of a block. Elements without a mass share
-    /// have 0.
+    /// Rest volume [m^3] and moduli times volume [Pa m^3] of the elements of a block; 0 for elements that get no mass.
     struct Weights {
         ElementLane volume, shear, volumetric;
     };
@@ -135,8 +134,8 @@ private:
         }
     };
 
-    /// Adds the matrix entries of one node to its three rows, which are zero so far. `place`: number of the node along
-    /// the body. Each row begins at its diagonal, `stride` numbers after the previous row.
+    /// Adds the matrix entries of one node to its three rows, which are zero so far. `place`: number of the node by
+    /// position along the body. Each row is stored from its diagonal on, `stride` numbers after the previous row.
     void add(std::size_t place, Real* rows, std::size_t stride) const {
         for (const ElementCorner& corner : corners_[place]) {
             const BlockNodes nodes = elements_.nodes_of(corner.block);
@@ -218,7 +217,7 @@ private:
         });
     }
 
-    /// Data for products of the matrix with a vector: a list of the elements that have a mass share.
+    /// Data for products of the matrix with a vector: the elements that get mass, and their corners.
     struct Factors {
         struct Element {
             Real shear, volumetric;

@@ -1,9 +1,10 @@
 // Chooses the matrix Q of the mass form G Q^-1 G^T of each element (docs/methods/stable_step.md 2.3). G contains the
 // gradients of the element at rest, V is its volume.
 //
-// With the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most w G Q^-1 G^T = G V W G^T.
-// This bound is the same for x, y and z, so the matrix of all elements is a third as wide as the true stiffness matrix.
-// Its eigenvalues are sharper bounds than the worst single element.
+// Let w be an upper bound on omega^2 of an element, with its highest circular frequency omega, and W = w Q^-1 / V. Then
+// the stiffness of the element is at most w G Q^-1 G^T = G V W G^T. This bound is the same for x, y and z, so the
+// matrix of all elements is a third as wide as the true stiffness matrix. Its eigenvalues are sharper bounds than those
+// of single elements.
 //
 // For every positive definite Z, W = 2 mu I + lambda tr(Z) Z^-1 bounds H = dP/dF at rest: X:H X <= X:X W for every X,
 // with Lame's mu and lambda. A good Z is the square root of the mean of grad u grad u^T over the highest modes u.
@@ -38,7 +39,7 @@ Symmetric mean_of(const Symmetric& a, const Symmetric& b, Real part_of_b) {
 }
 
 /// Approximate square root of a positive definite matrix of trace 1 (Denman and Beavers 1976). Eigenvalues of the root
-/// that should be below 0.03 come out too large.
+/// below 0.03 are not exact: they come out too large.
 Symmetric root_of(const Symmetric& s) {
     constexpr int passes = 6;
     Symmetric root = s, inverse{Real8{} + 1.0, Real8{} + 1.0, Real8{} + 1.0, {}, {}, {}};
@@ -59,8 +60,8 @@ Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-// Estimated ratio of the step with mass forms to the step that the bounds of single elements allow. It decides how much
-// the springs of Maxwell elements relax in a step (RestModuli).
+// Estimated ratio of the stable step with mass forms to the stable step by the bounds of single elements. It decides
+// how much the springs of Maxwell elements relax in a step (RestModuli).
 constexpr Real longer_by_forms = 1.5;
 
 // Number of blocks of elements above which a body counts as large. Such a body is cut into so many groups that the
@@ -73,7 +74,8 @@ struct ElementGroup {
     Range blocks;
     // Nodes sorted along the longest side of the group, counted from the first node of the body.
     std::vector<Index> node{};
-    std::size_t width = 0;         // bandwidth: 1 + greatest difference of ranks in `node` within an element
+    // bandwidth: 1 + greatest difference of the indices in `node` of two nodes of an element
+    std::size_t width = 0;
     std::vector<Real> mass{};      // share of the group in the mass of each of its nodes [kg]
     std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T
     std::vector<Real4> vector{};   // by node: values of four approximate highest modes
@@ -123,7 +125,8 @@ public:
             for (int p = 0; p < products; ++p) {
                 std::ranges::fill(product_, Real4{});
                 add_product(blocks_);
-                Real size = 0;  // squared norm of all vectors, which are then scaled to the norm of the noise
+                // squared norm of all vectors, which are then scaled to the norm of random start vectors
+                Real size = 0;
                 for (std::size_t n = 0; n < vector_.size(); ++n) {
                     vector_[n] = mass_[n] > 0 ? product_[n] / mass_[n] : Real4{};
                     size += mass_[n] * sum_of(vector_[n] * vector_[n]);
@@ -336,8 +339,8 @@ private:
         });
         for (const Index n : group.node) group.diagonal.push_back(sum[static_cast<std::size_t>(n)]);
     }
-    /// Greatest Rayleigh quotient of the four iterated vectors of a group, after `products` products with its matrix.
-    /// It is a lower bound on the highest eigenvalue of the group [1/s^2].
+    /// Greatest Rayleigh quotient of the four iterated vectors of a group, after `products` products with the matrix of
+    /// the group. It is a lower bound on the highest eigenvalue of the group [1/s^2].
     Real highest_of(ElementGroup& group, int products) {
         Real highest = 0;
         for (int p = 0; p < products; ++p) {
@@ -409,7 +412,7 @@ private:
     std::vector<ElementForm> weight_;      // weights V W [Pa m^3]
     std::vector<Real4> vector_, product_;  // by node: four iterated vectors; their products with the stiffness
     RestModuli moduli_;
-    std::vector<Index> place_;  // rank of each node in ElementGroup::node, or no_index
+    std::vector<Index> place_;  // index of each node in ElementGroup::node of the present group, or no_index
     BandDecomposition decomposition_;
 };
 

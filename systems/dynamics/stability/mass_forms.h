@@ -8,12 +8,12 @@
 
 namespace skerry {
 
-/// Limit on the number of multiplications for the decomposition of the matrix of a group. So many multiplications take
-/// about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
+/// Upper limit on the number of multiplications in the decomposition of the matrix of a group of elements. So many
+/// multiplications take about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_group = 4e8;
 
-/// Diagonal entries of Q for an implicit element, which belongs to a cluster [1/(kg m^2)]. With so small a Q the bound
-/// of the element limits no step. The element takes no part in the division of the masses. The entries are not 0,
+/// Diagonal entries of the matrix Q of an implicit element, which belongs to a cluster [1/(kg m^2)]. Such an element
+/// takes no part in the division of the masses. With so small a Q, its bound limits no step. The entries are not 0,
 /// because 0 means that a block has no mass forms.
 inline constexpr Real form_of_implicit = 1e-100;
 
@@ -24,9 +24,9 @@ inline constexpr Real form_of_implicit = 1e-100;
 /// these forms is at most the matrix of the nodal masses, diag(mass). A Cholesky decomposition verifies this for the
 /// complete body, or for groups of elements if it would cost more than `most_products` multiplications.
 ///
-/// The stiffness K and the mass M of the body then satisfy K <= max_e lambda_max(A) M with the Kronecker product in A =
-/// V H (Q x I), the volume V and H = dP/dF. Q does not depend on the shape, and the bound is valid for every shape. It
-/// is sharp for the rest shape.
+/// The stiffness K and the mass M of the body then satisfy K <= max_e lambda_max(A) M. A = V H (Q x I) contains the
+/// volume V of element e, H = dP/dF, and the Kronecker product of Q and the identity I. Q does not depend on the shape,
+/// and the bound is valid for every shape. It is sharp for the rest shape.
 ///
 /// `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block; 0 if nothing was found
 /// [1/(kg m^2)].

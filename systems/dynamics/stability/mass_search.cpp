@@ -27,8 +27,8 @@ Real8 RestModuli::explicit_mask(std::size_t block) const {
 }
 
 RestModuli::Moduli RestModuli::moduli(std::size_t block) const {
-    // Least shear modulus, as a fraction of the greatest modulus. With it even elements without stiffness get some
-    // mass.
+    // Lower limit on the shear modulus, as a fraction of the greatest modulus. It gives some mass even to elements
+    // without stiffness.
     constexpr Real least = 1e-9;
     const MaterialConstants material = elements_.material_of(block);
     Moduli moduli{Real8{} + std::max(2 * material.shear_modulus, least * stiffest_),
@@ -110,8 +110,8 @@ void BandDecomposition::subtract_pivots_from_two(const Pivots& pivot, std::size_
 bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
     const Real rounding = 1e-10 * limit;
     const std::size_t groups = matrix.size / matrix.group;
-    // The window stores complete groups of rows, so that no group is split at its end. Each row has margins at both
-    // ends, because registers are loaded from aligned addresses: up to a register length before the diagonal, and up to
+    // The window stores complete groups of rows, so that no group is split at its end. Registers are loaded from
+    // aligned addresses, so each row has margins at both ends: up to a register length before the diagonal, and up to
     // `pivots - 1` numbers and a register length after the band. The numbers in the margins are computed but not used.
     rows_ = ((matrix.width + 2 * pivots) / matrix.group + 2) * matrix.group;
     stride_ = (matrix.width + pivots + 3 * row_step) / row_step * row_step;

@@ -25,13 +25,13 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Moduli of explicit elements at rest. Springs of Maxwell elements count with the stiffness that they have in steps of
-/// a certain length: `longer` times the step that the bounds of single elements allow.
+/// Moduli of explicit elements at rest, with the springs of their Maxwell elements. In longer steps these springs relax
+/// more and count less. The assumed step is `longer` times the stable step that the bounds of single elements give.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
 
-    /// 1 for an explicit element; 0 for an implicit element, which belongs to a cluster and gets no mass share.
+    /// 1 for an explicit element, 0 for an implicit one. Implicit elements belong to clusters and get no mass share.
     Real8 explicit_mask(std::size_t block) const;
 
     struct Moduli {
@@ -71,7 +71,7 @@ inline Ragged<ElementCorner> corners_at(std::size_t nodes, auto&& for_each_corne
 }
 
 /// Symmetric band matrix: all entries outside a band around the diagonal are zero. A row is stored from the diagonal to
-/// the end of the band. Groups of rows are computed when they are needed.
+/// the end of the band. Rows are computed in groups, each when it is needed.
 struct BandMatrix {
     std::size_t size;   // number of rows, a multiple of `group`
     std::size_t width;  // number of entries stored per row
@@ -81,8 +81,9 @@ struct BandMatrix {
     FunctionRef<void(std::size_t group_index, Real* rows, std::size_t stride)> add_rows;
 };
 
-/// Tests if limit I - matrix has a Cholesky decomposition, with pivots above rounding errors, where I is the identity.
-/// A window that moves along the diagonal stores only rows that influence each other.
+/// Tests whether all eigenvalues of a band matrix are below a limit: whether limit I - matrix, with the identity I, has
+/// a Cholesky decomposition with pivots above rounding errors. A window that moves along the diagonal stores only rows
+/// that influence each other.
 class BandDecomposition {
 public:
     bool is_below(const BandMatrix& matrix, Real limit);
@@ -110,8 +111,8 @@ private:
     /// rows r and r + 1, but loads the pivot rows only once.
     void subtract_pivots(const Pivots& pivot, std::size_t r);
     void subtract_pivots_from_two(const Pivots& pivot, std::size_t r);
-    /// Pointer to the diagonal entry of row r. The entries of a column lie in the same lane of a register in all rows,
-    /// so that rows are subtracted register by register.
+    /// Pointer to the diagonal entry of row r. The entries of one column have the same lane of a register in all rows.
+    /// So rows can be subtracted register by register.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
     std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and number of entries per row

@@ -20,7 +20,8 @@ namespace skerry {
 
 namespace {
 
-/// Number of blocks in one piece of the stiffness sum. This sum takes as long as the bound of one block.
+/// Number of blocks in one piece of the stiffness sum. Their sum takes as long as the bound of one block, so all pieces
+/// take about the same time.
 constexpr Index blocks_summed = 8;
 
 Index sums_of(Range blocks) {
@@ -33,7 +34,7 @@ enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
 /// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one *wave* of blocks.
 /// Waves contain 1, 1, 2, 4, 8... blocks. A fast test shows that most blocks of a wave stay below the greatest bound of
-/// the earlier waves.
+/// the earlier waves. The exact bounds of these blocks are not computed.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;
@@ -89,8 +90,8 @@ struct Pieces {
         for (std::size_t i = 0; i < 9; ++i)
             for (std::size_t l = 0; l < element_lanes; ++l) sum[i] += elements.volume[b][l] * entry[i][l];
     }
-    /// Calls visit(block, bound of omega^2 by lane) for each block. The bounds use frame masses in the rotation of the
-    /// body. Bounds below `threshold` [1/s^2] may be given as `threshold`.
+    /// Calls visit(block, bound) for each block, where `bound` is the upper bound of omega^2 by lane. The bounds use
+    /// frame masses in the rotation of the body. Bounds below `threshold` [1/s^2] may be given as `threshold`.
     void bound_in_frame(Range blocks, const Mat3& rotation, Real threshold, auto&& visit) const {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
@@ -98,8 +99,8 @@ struct Pieces {
                                                 threshold));
         });
     }
-    /// Calls visit(block, bound of omega^2 by lane) for each block. Bounds below `threshold` [1/s^2] may be given as
-    /// `threshold`.
+    /// Calls visit(block, bound) for each block, where `bound` is the upper bound of omega^2 by lane. Bounds below
+    /// `threshold` [1/s^2] may be given as `threshold`.
     void bound(Range blocks, Real threshold, auto&& visit) const {
         // The search for the frame of a corotational element starts from the frame in the same lane of the block
         // before, since neighbours rotate alike.
@@ -198,8 +199,8 @@ std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks) {
 void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
                     StepEvaluation& check) {
-    // `least`: number of blocks in a chunk, some 20 us of work. `max_chunks`: number of chunks whose results fit on
-    // the stack.
+    // `least`: lower limit on the number of blocks in a chunk, some 20 us of work. `max_chunks`: upper limit on the
+    // number of chunks, whose results are stored on the stack.
     constexpr Index least = 8, max_chunks = 64;
     const auto in_chunks = [&](const PieceRun& run, auto&& body) {
         const Index count = run.blocks.size();
@@ -296,7 +297,7 @@ void element_stiffnesses(const ElementInputs& elements, Range blocks, std::span<
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
     constexpr int rounds = 4;
-    // Least factor by which a mass share changes in a round, so that all elements keep some mass.
+    // Lower limit on the factor by which a mass share changes in a round, so that all elements keep some mass.
     constexpr Real least = 1e-3;
     std::vector<ElementLane> step(mass_share.size());
     for (int round = 0; round < rounds; ++round) {

@@ -1,5 +1,5 @@
-// Finds the largest stable step of symplectic Euler, from a bound that stays sharp in meshes with slivers
-// (docs/methods/stable_step.md 1, 2).
+// Bounds the longest stable step of symplectic Euler from below. The bound stays sharp in meshes with slivers, which
+// are very flat tetrahedra (docs/methods/stable_step.md 1, 2).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Stable step of a body, and the element that limits the step.
+/// Stable step of a body, from a bound on its highest circular frequency omega_max, and the element that limits it.
 struct StableStep {
     Real step = 0;             // 0.9 * 2 / omega_max; infinite without elements; 0 if the shape is not finite [s]
     Index element = no_index;  // element that limits the step: lane e % 8 of block e / 8 of ElementBlockTable
@@ -23,8 +23,9 @@ struct StableStep {
 ///
 /// The mass of each node is shared among its elements: by frame_masses.h or mass_forms.h if the body has such masses,
 /// else in proportion to the stiffness of the elements and their mass_share. With the stiffness K_e and the mass M_e of
-/// element e, omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2). The material Hessian in the present shape is
-/// bounded as in docs/methods/stable_step.md 4. `stiffness_sum`: work memory, one entry per node.
+/// element e, the highest circular frequency satisfies omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2). The
+/// Hessian dP/dF in the present shape is bounded as in docs/methods/stable_step.md 4. `stiffness_sum`: work memory, one
+/// entry per node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
@@ -45,17 +46,17 @@ StableStep result_of(const StepEvaluation& check);
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 
-/// Squared frequency of each element of these blocks, bounded as if the element had all mass of its nodes
+/// Upper bound on the squared frequency of each element of these blocks, as if the element had all mass of its nodes
 /// (frequency_squared_of()) [1/s^2].
 void lone_frequencies(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<ElementLane> frequency_squared);
 
-/// Bound on the material Hessian of each element of these blocks (stiffness_of()) [Pa].
+/// Upper bound on the Hessian dP/dF of each element of these blocks (stiffness_of()) [Pa].
 void element_stiffnesses(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                          std::span<ElementLane> stiffness);
 
-/// Functions that bound every element of a range of blocks. The engine passes the functions for the instruction set in
-/// use to systems that are not kernels.
+/// Functions that compute bounds for every element of a range of blocks. The engine passes the versions for the
+/// instruction set in use to systems that are not kernels.
 struct ElementBounds {
     decltype(&skerry::element_steps) steps = &skerry::element_steps;
     decltype(&skerry::lone_frequencies) lone_frequencies = &skerry::lone_frequencies;

@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Tensor Q of inverse masses of each element: sum of g_k g_k^T / m_k over the nodes k, with the gradient g_k and the
-/// mass share m_k of node k.
+/// Tensor Q of inverse masses of each element: the sum of g_k g_k^T / m_k over the nodes k, with the gradient g_k and
+/// the mass m_k that the element gets from node k.
 LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                     std::span<const Real> mass, std::span<const Real> stiffness_sum) {
     const BlockNodes nodes = elements.nodes_of(block);
@@ -54,15 +54,15 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
                LaneQuaternion<Real8>& q, Real threshold, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
-    // A number that is 0, or NaN if F is not finite. It is added because some bounds do not depend on F.
+    // 0, or NaN if F is not finite. With it every bound becomes NaN then, even a bound that does not depend on F.
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.spring_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, threshold, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
     // Most elements are stable at the step to which `threshold` belongs, so their exact bounds are not needed. This
-    // quick test lets the springs relax for that step. With unrelaxed springs it would fail for nearly all elements,
-    // since all elements at rest allow about the same step.
+    // quick test lets the springs relax as in that step. With unrelaxed springs nearly all elements would fail the
+    // test, since all elements at rest allow about the same step.
     if (threshold > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(threshold));
         const Real8 compared =
@@ -163,7 +163,8 @@ Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t bloc
 
 namespace {
 
-/// Calls frequency_squared_bound() with unit masses, and with `volume` in place of the volumes of the elements.
+/// Upper bound on `volume` times the largest eigenvalue of dP/dF in each lane. It is the result of
+/// frequency_squared_bound() with unit masses, and with `volume` in place of the volumes of the elements.
 Real8 hessian_bound(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& volume,
                     LaneQuaternion<Real8>& q, Real threshold, Sharpness sharpness) {
     const MaterialConstants material = elements.material_of(block);

@@ -1,5 +1,6 @@
 // Shares the mass of each node among its elements in proportion to their stiffness, and bounds the frequency of each
-// element with its share (docs/methods/stable_step.md 2).
+// element with its share (docs/methods/stable_step.md 2). omega is the highest circular frequency of an element. A
+// block is a group of eight elements, one in each lane of a vector.
 #pragma once
 
 #include <span>
@@ -18,15 +19,15 @@ inline constexpr Real step_times_frequency = 0.9 * 2;
 /// Deformation gradients F of the elements of a block.
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position);
 
-/// Weight of each element for sharing the mass of its nodes: mass_share times the volume. If the stiffness of the
-/// material law varies with deformation, the weight also has the bound of the material Hessian as a factor. At node k
-/// the element counts with |g_k|^2 times the weight, where g_k is the gradient of the element at the node.
+/// Weight of each element when its nodes share their masses: mass_share times the volume. If the stiffness of the
+/// material law varies with deformation, the weight is also multiplied by an upper bound of dP/dF in the present shape.
+/// At node k the element counts with |g_k|^2 times the weight, where g_k is the gradient of the element at the node.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
 /// Sets the initial mass_share of each element. It is 1, except in these cases:
-/// - Bodies of several materials: the share of an element is the stiffness of its material, unless this stiffness is
-/// already part of the weight. It is relative to the greatest stiffness of the body, or in Pa if the weights of
-/// elements of other materials include their stiffness.
+/// - Bodies of several materials: the share of an element is the stiffness of its material, unless stiffness_weight()
+///   already contains a stiffness for this material. If it does so for any material of the body, shares of the others
+///   are in Pa. Otherwise they are divided by the greatest stiffness of the body.
 /// - Inversion barriers (guards): 0, because they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
@@ -71,10 +72,10 @@ inline bool has_mass_form(const ElementInputs& elements, std::size_t block) {
 Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                 LaneQuaternion<Real8>& q, Real threshold = 0);
 
-/// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the least of
-/// `threshold`, 1.1 `threshold`, 1.21 `threshold`... that is above omega^2, and infinite beyond ten times `threshold`.
-/// Springs of Maxwell elements relax as in steps of length `step` [s], so that the bound is also valid for longer
-/// steps.
+/// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the smallest
+/// of the numbers `threshold`, 1.1 `threshold`, 1.21 `threshold`... that exceeds omega^2. It is infinite if omega^2
+/// exceeds about ten times `threshold`. Springs of Maxwell elements relax as in steps of length `step` [s]; in longer
+/// steps they count less, so the bound is valid there, too.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                       LaneQuaternion<Real8>& q, Real threshold, Real step);
 
@@ -90,14 +91,14 @@ inline Real frame_bound(const ElementInputs& elements, Range blocks) {
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                  const Mat3& rotation, LaneQuaternion<Real8>& q, Real threshold = 0);
 
-/// Upper bound h on the material Hessian of each element of a block, with all viscous parts [Pa]. The stiffness of the
+/// Upper bound h on the Hessian dP/dF of each element of a block, with all viscous parts [Pa]. The stiffness of the
 /// element between nodes k and l is then bounded by the matrix h V g_k.g_l, with the volume V and the gradients g_k.
 Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                    LaneQuaternion<Real8>& q);
 
-/// True if every element of a block is less stiff than `times` its assumed stiffness. `modulus`: the assumed stiffness;
-/// 0 if the element is not tested [Pa]. The test of the Hessian is exact, while the bound stiffness_of() is up to 15 %
-/// too large. The test takes a tenth of the time.
+/// True if every element of a block is less stiff than `times` the modulus that is assumed for it. `modulus`: the
+/// assumed modulus; 0 if the element is not tested [Pa]. This test of dP/dF is exact, while the bound stiffness_of() is
+/// up to 15 % too large. The test takes a tenth of the time.
 bool less_stiff_than(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& modulus,
                      Real times, LaneQuaternion<Real8>& q);
 

@@ -24,7 +24,7 @@ constexpr Real base_factor = 1.1;
 // Number of rounds of the iteration for the node weights d. After many rounds the ratio of the row sum to the mass
 // times d would be equal at all nodes.
 constexpr int rounds = 4;
-// Number of factors of ten above the base within which an element gets a finite bound of omega^2.
+// Number of factors of ten above the base within which the omega^2 of an element is searched. Beyond, it is infinite.
 constexpr int ranges = 3;
 
 /// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight
@@ -72,8 +72,8 @@ LaneVec3<Real8> multiply(const LaneSymmetric<Real8>& s, const LaneVec3<Real8>& x
 }
 
 /// Adds the elements of a block to the row sums of the excess matrix E: row[i] += sum_j |E_ij| d_j over the nodes i and
-/// j of each element, with node weights d. `excess`: factors of the mass forms. Lanes with the excess 0 are left out,
-/// because the form of an unused lane is infinite.
+/// j of each element, with node weights d. `excess`: factors on the mass forms. Lanes with the excess 0 are left out,
+/// because the mass form of an unused lane is infinite.
 void add_rows(const BlockNodes& nodes, const Real8& excess, const LaneSymmetric<Real8>& mass_form, Index first_node,
               std::span<const Real> weight, std::span<Real> row) {
     const LaneSymmetric<Real8> form = excess * mass_form;
@@ -109,7 +109,7 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     // Nodes without mass never move and get the weight 0.
     for (std::size_t n = 0; n < node_mass.size(); ++n) parts.weight[n] = node_mass[n] > 0 ? 1 : 0;
-    Real least = infinity;  // least upper bound so far on the excess matrix E relative to the mass [1/s^2]
+    Real least = infinity;  // lowest upper bound found so far on the excess matrix E relative to the mass [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(parts.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {

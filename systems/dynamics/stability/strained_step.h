@@ -1,5 +1,5 @@
-// Stable step of a strained body with mass forms. It is sharper than stable_step() if only few elements, or only the
-// elements of some regions, have stiffened (docs/methods/stable_step.md 2.5).
+// Stable step of a strained body with mass forms (mass_forms.h). The bound is sharper than that of stable_step() if
+// only few elements, or only the elements of some regions, have stiffened (docs/methods/stable_step.md 2.5).
 #pragma once
 
 #include <span>
@@ -20,8 +20,9 @@ std::size_t strained_step_memory(Range nodes, Range blocks);
 /// is longer than `goal.stable`, because springs are assumed to relax for that time. `nodes`: range of all nodes of the
 /// elements. Sequential.
 ///
-/// One bound, the base, holds for all elements whose mass forms suffice for steps near `goal.longest`. For all other
-/// elements, the excess of omega^2 over the base forms a matrix, which is bounded by its row sums.
+/// One number, the base, bounds omega^2 of all elements whose mass forms suffice for steps near `goal.longest`. For
+/// each other element, the excess of its omega^2 over the base is multiplied by its mass form. These products add up to
+/// a matrix, which is bounded by its row sums.
 Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
                    std::span<const Real> mass, const StableStepGoal& goal, std::span<Real> memory);
 

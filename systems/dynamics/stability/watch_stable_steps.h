@@ -25,7 +25,7 @@ struct WatchInputs {
     }
 };
 
-/// Stable-step check of one body that this time step continues: how far it gets, and its intermediate result.
+/// Stable-step check of one body that this time step continues: how many pieces are done then, and the result so far.
 struct WatchPart {
     Index body = no_index;
     std::uint64_t until = 0;  // number of pieces done by the end of the step
@@ -33,8 +33,9 @@ struct WatchPart {
     StepEvaluation evaluation;
 };
 
-/// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape `watch`
-/// stores. A second call for the same step does nothing. `parts` is work memory that is reused between steps.
+/// Computes those pieces of stable-step checks that must be done by the end of this step. A check of a body uses the
+/// shape of the body that `watch` stores. A second call for the same step does nothing. `parts` is work memory that is
+/// reused between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry

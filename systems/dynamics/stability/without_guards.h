@@ -1,5 +1,5 @@
-// Selects the elements that bound steps and get mass: all except inversion barriers (guards)
-// (docs/methods/elasticity.md 7.7).
+// Selects the elements that get mass and limit the stable step: all except inversion barriers (guards), which keep
+// tetrahedra from inverting (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include "systems/dynamics/elements/compute_element_forces.h"

@@ -8,14 +8,14 @@ namespace skerry {
 namespace {
 
 constexpr Index colour_limit = 64;  // bits of ColouringMemory::colours_used
-// Bin of the tail (contacts without a colour); the bins of the hubs (nodes with many contacts) follow.
+// Bin for the tail, the contacts that get no colour. The bins of the hubs (nodes with many contacts) follow.
 constexpr Index tail_bin = colour_limit;
 
 /// Number of blocks into which the contacts of one colour are divided. A block has at most 64 contacts: solving it
 /// takes a microsecond, claiming it a twentieth of that. The number of blocks is a power of two or a multiple of 16, so
 /// that 2, 4, 8 or 16 workers get equal numbers of blocks.
 Index blocks_of_colour(Index contacts) {
-    // `even_workers`: greatest number of workers among which the blocks of a phase can be divided evenly
+    // If the number of workers is a power of two and at most `even_workers`, all workers get equal numbers of blocks.
     constexpr std::uint32_t max_contacts = 64, even_workers = 16;
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + max_contacts - 1) / max_contacts;
     return static_cast<Index>(least <= even_workers ? std::bit_ceil(least)
@@ -123,9 +123,9 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
     });
 }
 
-/// Computes the phases and blocks of the coloured order. In bin_begin it replaces the contact count of a bin by the
-/// index of the first contact of the bin in the coloured order. For bins whose contacts go to the tail it writes
-/// no_index.
+/// Computes the phases and blocks of the coloured order. On entry bin_begin holds the number of contacts of each bin.
+/// Layout replaces it by the index in the coloured order of the first contact of the bin, or by no_index if the
+/// contacts of the bin go to the tail.
 class Layout {
 public:
     Layout(ColouringMemory& memory, ColouredOrder& order) : memory_(memory), order_(order) {
@@ -203,8 +203,8 @@ private:
     Index next_ = 0;
 };
 
-/// Lists the contacts in `by_node`, sorted by their lowest moving node. Contacts with equal lowest node stay in
-/// ascending order.
+/// Lists the contacts in `by_node`, sorted by the lowest number of their moving nodes. Contacts with equal lowest node
+/// stay in ascending order.
 void sort_by_node(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const auto lowest = [&](const ContactNodes& nodes) {
         Index node = std::max(nodes[0], Index(0));
@@ -221,8 +221,8 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Writes the coloured order. Contacts of one colour are sorted by node. A worker prefers the same fraction of the
-/// blocks in every phase (Team), so it meets mostly the same nodes in all colours and finds them in its cache. Contacts
+/// Writes the coloured order. Contacts of one colour are sorted by node. A worker begins every phase with the same
+/// share of the blocks (Team). So it meets mostly the same nodes in all colours and finds them in its cache. Contacts
 /// of hubs and of the tail stay in ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {

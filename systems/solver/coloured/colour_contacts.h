@@ -1,5 +1,5 @@
-// Coloured order of a region's contacts. Contacts of one colour share no node, so they can be solved concurrently
-// (docs/methods/region_solver.md 6.1).
+// Coloured order of a region's contacts. Contacts of one colour share no moving node, so they can be solved
+// concurrently (docs/methods/region_solver.md 6.1).
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace skerry {
 using ContactNodes = std::array<Index, 4>;
 
 /// Contacts of a block are solved one after the other by one thread. Blocks of a phase share no node and are solved
-/// concurrently. Phases are solved one after the other. The result is bitwise that of solving the contacts one by one
-/// in this order.
+/// concurrently. Phases are solved one after the other. The result is bitwise equal to that of one thread that solves
+/// the contacts in this order.
 struct ColouredOrder {
     Column<Index> contact;       // the coloured order: numbers of the contacts in the region
     Column<Index> block_offset;  // index in `contact` of each block's first contact; last entry: contact count
@@ -31,11 +31,14 @@ struct ColouringMemory {
     Column<Index> degree;                // by node: number of contacts at the node
     Column<Index> hub_of_node;           // by node: index of the node among the hubs, or no_index
     Column<Index> bin;                   // by contact: colour, or 64 for the tail, or 65 + index of a hub
-    Column<Index> bin_begin;  // by bin: number of contacts, later the index in `contact` for its next contact
-    // Lists of the contacts of each hub: start of each list, and all lists one after the other.
+    // by bin: number of contacts; later the index in ColouredOrder::contact at which the next contact of the bin is
+    // placed
+    Column<Index> bin_begin;
+    // hub_item: lists of the contacts of the hubs, one list after the other; hub_offset: start of the list of each hub
     Column<Index> hub_offset, hub_item;
     Column<Index> hub_order, hub_colour;
-    // by_node: contacts sorted by lowest node; node_offset: start of each node in by_node
+    // by_node: contacts sorted by their lowest node number; node_offset: for each node, index in by_node of its first
+    // contact
     Column<Index> node_offset, by_node;
 };
 
@@ -49,7 +52,7 @@ inline constexpr Index smallest_colour = 64;
 
 /// Colours the contacts greedily in ascending order, with at most 64 colours. Contacts without a free colour go to the
 /// tail. The result depends only on the arguments. Nodes are numbered 0 .. node_count - 1. Contacts of a colour are
-/// sorted by node. A worker prefers the same fraction of the blocks in every phase (Team), so it meets mostly the same
+/// sorted by node. A worker begins every phase with the same share of the blocks (Team), so it meets mostly the same
 /// nodes in all colours and finds them in its cache.
 void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory,
                      ColouredOrder& order);

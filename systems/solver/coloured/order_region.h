@@ -26,8 +26,8 @@ struct ColouredRegion {
 ContactNodes moving_nodes(const RegionInputs& inputs, Index row);
 
 /// Orders the contacts listed in `row`. `node_number` is scratch memory by row of NodeTable; its initial contents do
-/// not matter. Returns false if no moving node of a contact has changed since the last call, as in a region at rest.
-/// The order of the last call is then reused.
+/// not matter. If no contact has other moving nodes than in the last call, as in a region at rest, the order of the
+/// last call is reused and the result is false.
 bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> node_number,
                   ColouredRegion& region);
 

@@ -27,8 +27,8 @@ void BlockFactor::couple(Index g, Index h) {
     coupled_[pair(g, h)] = coupled_[pair(h, g)] = 1;
 }
 
-/// Returns the remaining part (group of unknowns) that is cheapest to eliminate, the first of several. The cost of a
-/// part with n unknowns, coupled to m unknowns of remaining parts, is estimated as n (n + m)^2.
+/// Returns the remaining part (group of unknowns) that is cheapest to eliminate; of several equally cheap parts the
+/// first. The cost of a part with n unknowns, coupled to m unknowns of remaining parts, is estimated as n (n + m)^2.
 Index BlockFactor::next_to_eliminate() const {
     Index next = no_index;
     Real least = infinity;

@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// A part is a group of unknowns with one row and one column of blocks. Memory is reused: solving a problem of a size
-/// seen before allocates nothing.
+/// A part is a group of unknowns. It has one row and one column of blocks. Memory is reused: if a problem of the same
+/// size was solved earlier, no memory is allocated.
 class BlockFactor {
 public:
     /// Removes all parts.
@@ -24,8 +24,8 @@ public:
     /// close_parts() and analyse().
     void couple(Index g, Index h);
     void close_parts();
-    /// Finds the elimination order. Returns false if the factor would need more than 256 MiB. Only start() may be
-    /// called then.
+    /// Finds the elimination order. Returns false if the factor would need more than 256 MiB. After this result only
+    /// start() may be called.
     bool analyse();
     /// Number of multiplications of one factorisation.
     Real work() const { return work_; }
@@ -56,9 +56,9 @@ private:
     Column<Index> size_;  // by part: number of unknowns
     // For each pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
     Column<std::uint8_t> coupled_;
-    Column<Index> beside_;        // by part: total size of the coupled parts that are not yet eliminated
+    Column<Index> beside_;        // by part: number of unknowns of the coupled parts that are not yet eliminated
     Column<Index> order_, rank_;  // order_: parts in elimination order; rank_: by part, its index in order_
-    // For each entry k of order_: the parts that are coupled to part order_[k] and eliminated after it.
+    // For each entry k of order_: the parts that are coupled to part order_[k] and eliminated after this part.
     Ragged<Index> later_;
     Column<std::size_t> first_;   // by pair of parts: index of the block's first entry in `number_`
     Column<Index> stride_below_;  // by part: column stride of the part's blocks below the diagonal

@@ -1,6 +1,7 @@
 // Linear systems of Newton steps on contacts between bodies. The unknowns are velocities of the bodies
-// (docs/methods/region_solver.md 5.9). The matrix is the inertia matrix K plus the response of the contacts. The cost
-// grows with the height of a stack, not with the number of contacts between two bodies.
+// (docs/methods/region_solver.md 5.9). The matrix is the inertia matrix K minus the derivative of the contact impulses
+// with respect to the unknowns. The cost grows with the height of a stack, not with the number of contacts between two
+// bodies.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ struct BodyPush {
     Vec3 arm = Vec3::Zero();
 };
 
-/// Equations of one region. Memory is reused between regions. Vectors "by number" have the order of BlockFactor::right.
+/// Equations of one region. Memory is reused between regions.
 class BodyEquations {
 public:
     struct Pushes {
@@ -35,7 +36,8 @@ public:
         std::span<const BodyPush> all() const { return {push.data(), static_cast<std::size_t>(count)}; }
     };
     /// A node velocity or rigid motion that contacts of the region can change. `row`: its row among the velocities of
-    /// the region. `part`, `first_entry`: its part of the equations, and its first entry within the part.
+    /// the region. `part`, `first_entry`: its part (group of unknowns of BlockFactor), and the index of its first entry
+    /// within the part.
     struct Unknown {
         Index body, partner;  // identify the unknown's body and, for a node, the other body it touches, or no_index
         Index row;
@@ -79,12 +81,13 @@ public:
     bool rigid_modes = false;  // true: deformable bodies move only as rigid bodies
     Column<Vec3> offset;  // by contact: part of the contact velocity that is independent of the unknowns, u - J v [m/s]
 
-    // Vectors by number [m/s, rad/s]. present: motion of the current iterate. produced: motion that the impulses for
-    // `present` produce. change: produced - present. step: Newton step. before: `present` before the step.
+    // Vectors in the order of BlockFactor::right [m/s, rad/s]. present: motion of the current iterate. produced: motion
+    // that the impulses for `present` produce. change: produced - present. step: Newton step. before: `present` before
+    // the step.
     Column<Real> present, produced, change, step, before;
-    Column<Mat3> derivative;  // by contact: derivative of the impulse from which the last matrix was built
-    // Data by contact. way: sliding direction of the contact with which the last matrix was built; zero if it did not
-    // slide. stops: 1 if the next step shall stop the contact.
+    Column<Mat3> derivative;  // by contact: derivative of the impulse that the last matrix contains
+    // Data by contact. sliding_direction: direction in which the contact slid when the last matrix was built; zero if
+    // it did not slide. stops: 1 if the next step shall stop the contact.
     Column<Vec3> sliding_direction;
     Column<std::uint8_t> stops;
     Index rises = 0;  // number of steps in this round that were accepted although the merit function rose

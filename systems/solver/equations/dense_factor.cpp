@@ -28,8 +28,9 @@ void subtract(Real value, Real* from) {
     *from -= value;
 }
 
-/// Operations that write one register of a product into a column of c: subtract the register, subtract only the last
-/// rows of the register (the rows above are already done), or overwrite the column with the register.
+/// Operations that write one register of a product to a column of c. `subtract_from` subtracts the register.
+/// TakeOffLast subtracts only its last `count` rows, because the rows above are already done. `store` overwrites the
+/// column.
 constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
 struct TakeOffLast {
     Index count;
@@ -94,7 +95,7 @@ void subtract_scaled(Real factor, const Real* x, Real* y, Index count) {
     for (; k < count; ++k) y[k] -= factor * x[k];
 }
 
-/// Factors the columns [begin, end) of a. Row exchanges apply to the whole matrix.
+/// Factors the columns [begin, end) of a, and updates only these columns. But row exchanges apply to the whole matrix.
 bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
     for (Index k = begin; k < end; ++k) {
         Real* const column = a.column(k);
@@ -140,8 +141,8 @@ struct TriangleInverse {
         }
         return inverse;
     }
-    /// Replaces b by the inverse of the triangle times b. In-place is safe: the columns of b are read four at a time
-    /// before they are written.
+    /// Replaces b by the inverse of the triangle times b. The product may overwrite b, because the columns of b are
+    /// read four at a time before they are written.
     void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, store); }
 };
 constexpr Index many_columns = panel;  // least number of right-hand columns for which TriangleInverse pays off
@@ -171,8 +172,8 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
     }
 }
 
-/// Splits the columns of b where at least eight consecutive columns are zero, and calls of(begin, count) for each range
-/// between. Zero columns come from nodes without a pressed contact, which do not couple to other bodies.
+/// Calls visit(begin, count) for the ranges of columns of b between gaps of at least eight consecutive zero columns.
+/// Zero columns come from nodes without a pressed contact, which do not couple to other bodies.
 void for_each_run_of_columns(const DenseBlock& b, auto&& visit) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {
@@ -261,8 +262,8 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 }
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
-    // Whether triangle inverses are used depends on the number of all columns, not on the lengths of the runs, so that
-    // the bits of the result do not depend on which columns are zero.
+    // Triangle inverses are used if b has many columns in total, whatever the lengths of the ranges of nonzero columns.
+    // So the bits of the result do not depend on which columns are zero.
     const bool many = b.columns >= many_columns;
     for_each_run_of_columns(
         b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });

@@ -38,7 +38,7 @@ public:
         Slot* slot_ = nullptr;
     };
 
-    /// Makes room for this many workers. Call it only while no memory is leased.
+    /// Makes room for this number of workers. Call it only while no memory is leased.
     void make_room(std::size_t workers) {
         while (slots_.size() < workers) slots_.push_back(std::make_unique<Slot>());
     }

@@ -29,9 +29,9 @@ struct RigidInputs {
     std::span<const Vec3> moments{};
     std::span<const Mat3> rotation{};
     std::span<const Index> body{}, core_nodes{};  // `body`: row of BodyTable; `core_nodes`: by row of BodyTable
-    // Row of AttachmentTable that prescribes the motion of the body (the body is held), or no_index. The span is empty
-    // if no body is held. The RigidBodyTable row of a deformable body in a held frame has zero velocity; the nodes of
-    // the body store their total velocity (docs/methods/implicit_bodies.md 7).
+    // Row of AttachmentTable of the attachment that prescribes the motion of the body (the body is held), or no_index.
+    // The span is empty if no body is held. If the frame of a deformable body is held, its row of RigidBodyTable has
+    // zero velocity, and its nodes store their total velocity (docs/methods/implicit_bodies.md 7).
     std::span<const Index> holder{};
 
     bool any() const { return nodes.any(); }
@@ -45,8 +45,8 @@ struct RigidInputs {
         return nodes.round_radius[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
 
-    /// Number of core nodes (on the centre or axis of a round body) of the body at row `r` of RigidBodyTable; 0 if it
-    /// has none.
+    /// Number of core nodes of the body at row `r` of RigidBodyTable; 0 if the body is not round. Core nodes define the
+    /// centre or axis of a round body.
     Index core_of(Index r) const {
         return core_nodes.empty() ? 0 : core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
@@ -103,7 +103,7 @@ struct ImplicitInputs {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// Change of a node's velocity by the kick on the deformation of its implicit body, in world axes [m/s]; zero for
+    /// Change of a node's velocity by the forces on the deformation of its implicit body, in world axes [m/s]; zero for
     /// nodes of other bodies. It comes from elastic forces. In a body at rest, contact impulses cancel this change in
     /// every step.
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
@@ -124,8 +124,8 @@ struct RegionInputs {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
     Real gravity = 0;                    // magnitude of gravity, for the scale of the error measure [m/s^2]
-    // Ascending contact keys. With them, regions are recognised in later steps, and the scheduler estimates their cost
-    // from earlier sweep counts. The span may be empty.
+    // Ascending contact keys. They identify regions across steps, so that the scheduler can predict the cost of a
+    // region from its sweep counts in earlier steps. The span may be empty.
     std::span<const ContactKey> key{};
     // Clusters: groups of nodes with a coupled mass matrix. Null or empty if every node has its own mass.
     const NodeClusters* clusters = nullptr;
@@ -135,8 +135,8 @@ struct RegionInputs {
     std::span<const JointBlock> joints{};  // joints between rigid bodies; none by default
     SolvedCables cables{};                 // none by default
     // first_body and second_body: rows of BodyTable of the two bodies of a contact, or no_index. body_kind and
-    // still_time: by row of BodyTable. If the spans are empty, no body counts as still
-    // (SolverSettings::still_tolerance).
+    // still_time: by row of BodyTable; they tell which bodies are still (SolverSettings::still_tolerance). If the spans
+    // are empty, no body counts as still.
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
@@ -183,10 +183,10 @@ struct RegionInputs {
 };
 
 struct RegionOutputs {
-    std::span<Vec3> impulse;        // by contact: warm start as input, solution as output [N s]
-    std::span<Vec3> velocity_next;  // by node: predicted velocity as input, solution as output [m/s]
+    std::span<Vec3> impulse;        // by contact: before the solve the warm start, after it the solution [N s]
+    std::span<Vec3> velocity_next;  // by node: before the solve the predicted velocity, after it the solution [m/s]
     std::span<Vec3> push_out;       // by node, except of rigid bodies: pseudo velocity of the split impulse [m/s]
-    // Contact impulses, moments and pseudo velocities by row of RigidBodyTable, zero before the solve.
+    // Contact impulses, moments and pseudo velocities by row of RigidBodyTable. They must be zero before the solve.
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
     std::span<Vec3> deforming_impulse{};     // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};         // by joint block: warm start as input, solution as output

@@ -11,8 +11,8 @@ struct SolverSettings {
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;  // relative error e_nat at which sweeps end (docs/methods/errors.md 2)
-    // Tolerance for regions whose bodies did not move in the last step, if it is smaller than `tolerance`
-    // (docs/methods/errors.md 7).
+    // Tolerance for regions whose bodies did not move in the last step. It has no effect unless it is smaller than
+    // `tolerance` (docs/methods/errors.md 7).
     Real still_tolerance = 1;
     Index max_iterations = 200;  // upper limit on the number of sweeps per region
     // If true, each region does exactly max_iterations sweeps. With method pgs, results are then bitwise independent of
@@ -23,11 +23,11 @@ struct SolverSettings {
     // beta: fraction of a negative gap that the split impulse corrects per step (docs/methods/contact.md 3.4).
     Real recovery = 0.15;
     Real recovery_speed = 0.5;  // upper bound of the speed at which the split impulse corrects a gap [m/s]
-    // Regions with at least this many contacts are solved one after the other, each by a team of workers in the
-    // coloured order of its contacts (colour_contacts.h).
+    // Regions with at least this many contacts are solved one after the other, each by a team of workers. The workers
+    // follow a colouring of the contacts (colour_contacts.h).
     Index parallel_region_contacts = 2000;
-    // Switches of shortcuts (docs/methods/skipping.md 1, 2). Switching one off changes results only within the
-    // tolerance.
+    // Switches of shortcuts (docs/methods/skipping.md 1, 2). If a shortcut is switched off, the results change only
+    // within the tolerance.
     bool certify_warm_start = true;  // skip the sweeps if the error of the warm start is within the tolerance
     bool skip_separating = true;     // return zero impulses if no contact of the region closes
     bool frictionless_rows = true;   // solve only for normal impulses if no contact of the region has friction

@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Possible sizes of a lane problem. The number of contacts of a region is padded to the next of these sizes.
+/// Possible sizes of a lane problem. Unused contacts are added to a region until it has one of these sizes.
 inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
 inline constexpr int largest_lane_region = lane_sizes.back();
 
@@ -32,7 +32,7 @@ struct LaneProblem {
     T diagonal[K];                 // mobility D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
     T inverse_diagonal[K];         // 1/D; zero for unused contacts [kg]
     T friction[K];
-    T scale;      // e_nat is the norm of the error divided by this number [sqrt(J)]
+    T scale;      // number by which the norm of the residual is divided, which gives the error e_nat [sqrt(J)]
     T tolerance;  // tolerance of e_nat
 };
 
@@ -69,8 +69,8 @@ Vec4 lane_of(const LaneVec3<T>& all, int lane) {
     return {lane_of(all.x, lane), lane_of(all.y, lane), lane_of(all.z, lane), 0};
 }
 
-/// Writes the matrix C = J M^-1 J^T of the region, with the stencil weights J and the lumped masses M, into its lane.
-/// Entries of unused contacts keep their values.
+/// Writes the matrix C = J M^-1 J^T of the region into its lane, with the stencil weights J and the lumped masses M.
+/// Matrix entries of unused contacts keep their values.
 template <class T, int K>
 void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
     std::array<Real, 4 * K> step;  // by node: velocity change per unit impulse of contact i [1/kg]
@@ -89,7 +89,8 @@ void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& proble
     }
 }
 
-/// Resets the problem, so that unused lanes and contacts have zero impulses. The scale 1 avoids 0 / 0 in unused lanes.
+/// Resets the problem, so that unused lanes and contacts have zero impulses. In unused lanes, the scale 1 avoids an
+/// error of 0 / 0.
 template <class T, int K>
 void clear(LaneProblem<T, K>& problem) {
     problem = LaneProblem<T, K>();

@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Largest number of sweeps in lanes. Up to this number the watchdog of solve_ags does not act, so solve_lanes and
-/// solve_ags do the same iteration.
+/// Largest number of sweeps in lanes. Up to this number the watchdog of solve_ags, which switches to plain sweeps if
+/// there is no progress, does not act. So solve_lanes and solve_ags do the same iteration.
 inline constexpr Index lane_sweep_limit = watchdog_patience;
 
 inline bool any_lane(bool mask) {

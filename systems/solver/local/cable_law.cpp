@@ -109,7 +109,7 @@ void CableLaw::solve() const {
         std::ranges::fill(rate, Real(0));
         return;
     }
-    // If the passes end before convergence, the next sweep of the region continues from their impulses. So this limit
+    // If the passes end before convergence, the next sweep of the region continues from their impulses. So max_passes
     // does not limit the accuracy.
     constexpr int max_passes = 50;
     constexpr Real rounding = 1e-15;

@@ -22,14 +22,14 @@ struct CableLaw {
     bool by_length = false;
     Real prescribed = 0;  // if `by_length`: upper bound of the sum of the u_s [m/s]; else: impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
-    std::span<const Real> most_ratio;  // by segment: e at the start of the segment
+    std::span<const Real> most_ratio;  // by segment: limit e of the ratio of tensions at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]
-    // Sum of A_ij over i, j >= s, for each segment s [1/kg]. It is the mobility of the rate of length of the cable from
-    // segment s to the end.
+    // For each segment s: sum of A_ij over i, j >= s [1/kg]. If the tension impulses of all segments from s to the end
+    // grow by 1 N s, the rate of length of this part of the cable falls by this sum.
     std::span<Real> far_mobility;
     // Columns by segment: present impulses [N s] and rates of length [m/s]. `before`, `previous` are scratch of
-    // BodyOperator::sweep_cables: impulses before the cable is solved and in the previous sweep, later the differences
-    // of `impulse` from both.
+    // BodyOperator::sweep_cables. They first hold the impulses before the cable is solved and those of the previous
+    // sweep, later the differences of `impulse` from these two.
     std::span<Real> impulse, rate, before, previous;
     static constexpr std::size_t numbers_by_segment = 5;  // number of the spans by segment, from far_mobility on
 
@@ -55,8 +55,8 @@ private:
     Real entry(std::size_t row, std::size_t column) const { return mobility[row * segments() + column]; }
     /// Rate of length of the cable from segment `s` on [m/s].
     Real far_rate(std::size_t s) const;
-    /// Impulse with which segment `s` satisfies the law if far_rate(s) decreases by `rate_mobility` [1/kg] per unit of
-    /// this impulse [N s].
+    /// Impulse with which segment `s` satisfies the law. `rate_mobility`: decrease of far_rate(s) per unit of this
+    /// impulse [1/kg].
     Real next_impulse(std::size_t s, Real rate_mobility) const;
     Real step(std::size_t s) const;
     /// Change of the impulse of a tie that makes its rate zero [N s].

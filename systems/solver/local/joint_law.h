@@ -22,9 +22,10 @@ struct AxisBounds {
 /// Returns the impulse of motor and dry friction together, where u = w r + b is the axis velocity and w the mobility.
 /// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
-    // `first` is the drive with the lower target velocity. Below this target both drives push forwards with full
-    // strength. Between the targets `first` brakes with full strength, and `second` still pushes forwards. So at the
-    // lower target the sum is in [second - first, second + first].
+    // Motor and friction are two drives; the target velocity of friction is 0. `first`, `second`: greatest impulses of
+    // the drive with the lower and of the drive with the higher target. Below the lower target both drives push
+    // forwards with full strength. Between the targets the first drive brakes and the second still pushes, both with
+    // full strength. So at the lower target the sum of their impulses is in [second - first, second + first].
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
     const Real near_first = std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
@@ -57,7 +58,8 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     }
     if (!(axis.most > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
-    // Up to the lower target, `second` has its full strength, so `first` has the rest. Above it, `first` brakes fully.
+    // `first`, `second`: as in drive_impulse. Up to the lower target the second drive has its full strength, and the
+    // first one gives the rest. Above that target the first drive brakes with full strength.
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
     const Real first_drive = drive >= second - first ? drive - second : -first;
@@ -72,7 +74,8 @@ struct JointLaw {
     Mat3 block;          // diagonal block of W of the three rows
     Mat3 inverse;        // inverse of the locked rows and columns of `block`; 0 in the row and column of a free axis
     Real axis_mobility;  // mobility of the axis while the locked rows hold (Schur complement)
-    // coefficient of the axis velocity in a mimic equation, which couples two joints; if not 0, no other member is used
+    // Coefficient of the axis velocity in a mimic equation, which couples two joints. If it is not 0, this equation
+    // replaces the three rows.
     Real mimic = 0;
 
     void prepare(const Mat3& delassus_block, bool with_axis);

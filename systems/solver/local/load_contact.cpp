@@ -6,9 +6,9 @@
 namespace skerry {
 namespace {
 
-/// `before`: contact velocity at the start of the step. `now`: predicted contact velocity after the forces of the step
-/// have acted, but without the velocity change of the deformation of implicit bodies, because contact impulses cancel
-/// this change in a body at rest [m/s].
+/// `before`: contact velocity at the start of the step [m/s]. `now`: predicted contact velocity after the forces of the
+/// step have acted [m/s]. It leaves out the velocity change by the deformation of implicit bodies, because contact
+/// impulses cancel this change in a body at rest.
 struct AroundKick {
     Vec3 before, now;
 };

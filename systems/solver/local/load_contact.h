@@ -19,8 +19,8 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 /// Correction of the direction of friction [m/s]: half of the change of the sliding velocity by the forces of this
 /// step, perpendicular to the sliding direction. The friction law uses the velocity at the end of the step, whose
 /// direction has a first-order error. With the correction, friction acts along the sliding direction at the middle of
-/// the step. Zero if there is no friction, no sliding or no change of direction, and for friction that depends on the
-/// direction, because such friction itself turns the slip.
+/// the step. The correction is zero if there is no friction, no sliding or no change of direction. It is also zero for
+/// friction that depends on the direction, because such friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
 /// Loads contact `row`. `local(node)` returns the velocity row of a moving node in the region. `velocity_next` holds
@@ -54,9 +54,9 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
         contact.diagonal += weight * weight * inverse_mass;
         lightest = std::max(lightest, inverse_mass);
     }
-    // Least ratio of the mobility to the greatest inverse mass for a movable contact. The ratio is about a squared
+    // Lower limit of the ratio of the mobility to the greatest inverse mass of the nodes. This ratio is about a squared
     // weight. If all weights of moving nodes are below 1e-6, these nodes would have to move a million times faster than
-    // the contact, which then counts as immovable.
+    // the contact. Such a contact counts as immovable.
     constexpr Real smallest_share = 1e-12;
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;

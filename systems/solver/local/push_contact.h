@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// Depth below which penetrations are not corrected [m]. The first term is the drift of a hundred steps: a resting
+/// Penetrations up to this depth are not corrected [m]. The first term is the drift of a hundred steps: a resting
 /// contact solved to a tolerance of 1e-3 sinks by at most g h^2 / 1000 per step. The second term is the rounding error
 /// of positions some kilometres from the origin.
 inline Real push_slop(Real gravity, Real h) {
@@ -29,17 +29,18 @@ inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth,
     return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }
 
-/// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n [m/s]. `normal_velocity`: u_n,
-/// the normal velocity of the solved contact. A negative bias requests a push. A contact that does not penetrate
-/// requests none, even if the velocity solve left an error. So a region without penetration gets zero pseudo
-/// velocities, alone or within a larger region.
+/// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n, which moves positions only
+/// [m/s]. `normal_velocity`: u_n, the normal velocity after the velocity solve. A negative bias requests a push. A
+/// contact that does not penetrate requests none, even if the velocity solve left an error. So a region without
+/// penetration gets zero pseudo velocities, alone or within a larger region.
 inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSettings& settings, Real gravity, Real h) {
     if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Bias of a contact whose gap changes by its contact velocity and, in addition, shrinks by a rotation [m/s]. `loss` <=
-/// 0: rate of change of the gap by this rotation. The push compensates the part of the loss that the gap cannot absorb.
+/// Bias of a contact whose gap changes not only by its contact velocity, but also shrinks by a rotation of a body
+/// [m/s]. `loss` <= 0: rate of change of the gap by this rotation. If the gap is too small for the loss, the push
+/// compensates the rest of it.
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;

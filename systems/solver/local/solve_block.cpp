@@ -7,11 +7,13 @@
 namespace skerry {
 namespace {
 
-/// Impulse of a sliding contact as a function of s = |u_t| / |r_t|, and its derivatives with respect to s. The notation
-/// is that of docs/methods/friction.md 3.1, 3.2.
+/// Impulse of a sliding contact as a function of the ratio s = |u_t| / |r_t| of tangential velocity and impulse, and
+/// the derivatives of the impulse with respect to s. The notation is that of docs/methods/friction.md 3.1, 3.2.
 struct SlipCurve {
     const LocalBlock& block;
-    Real bn, b[2];  // `b`: tangential velocity after elimination of the normal, along the principal axes [m/s]
+    // `bn`: normal velocity without any impulse [m/s]. `b`: tangential velocity under the normal impulse of a contact
+    // without friction, along the principal axes [m/s].
+    Real bn, b[2];
     Real mu;
 
     Real rt[2], rt_length, rn, rt_slope, rn_slope;
@@ -58,7 +60,7 @@ Real find_slip_safely(SlipCurve& curve) {
         high *= 2;
     Real s = 0;
     curve.evaluate(s);
-    constexpr int iteration_limit = 100;  // pure bisection needs about 60 iterations
+    constexpr int iteration_limit = 100;  // upper limit; pure bisection needs about 60 iterations
     for (int iteration = 0; iteration < iteration_limit; ++iteration) {
         if (curve.on_cone()) break;
         (curve.inside_cone() ? high : low) = s;
@@ -74,11 +76,11 @@ Real find_slip_safely(SlipCurve& curve) {
     return s;
 }
 
-/// Finds s by Newton's method, started from the last solution; one or two steps are usual. Any root with r_n > 0 is a
-/// solution. If Newton's method does not converge quickly, find_slip_safely takes over.
+/// Finds s by Newton's method, started from the last solution; one or two steps are usual. If there are several roots,
+/// any root with r_n > 0 is a solution. If Newton's method does not converge quickly, find_slip_safely takes over.
 Real find_slip(SlipCurve& curve, Real start) {
     Real s = start;
-    constexpr int fast_limit = 6;  // limit of Newton iterations, three times the usual number
+    constexpr int fast_limit = 6;  // upper limit of the Newton iterations, three times the usual number
     for (int iteration = 0; iteration < fast_limit && s > 0; ++iteration) {
         curve.evaluate(s);
         if (!(curve.rn > 0)) break;
@@ -121,8 +123,8 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[0] = a;
         block.eigenvalue[1] = c;
     }
-    // SlipCurve divides by the eigenvalues. Rounding errors can make a zero eigenvalue negative, so eigenvalues are
-    // raised to a positive bound.
+    // SlipCurve divides by the eigenvalues. Rounding errors can make a zero eigenvalue negative, so each eigenvalue is
+    // raised to at least a small positive number.
     constexpr Real rank_rounding = 1e-14;  // smallest eigenvalue as a fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);

@@ -14,8 +14,8 @@ struct LocalBlock {
     Real coupling[2];     // coupling between normal and tangents, along the principal axes [1/kg]
     Real eigenvalue[2];   // eigenvalues > 0 of the tangential Schur complement [1/kg]
     Real cosine, sine;    // rotation of the tangents to the principal axes
-    // |u_t| / |r_t| of the last sliding solution, used as start of the next search. It affects only the speed of the
-    // search [1/kg]
+    // Ratio |u_t| / |r_t| of the last sliding solution. The next search for this ratio starts from it, so it affects
+    // only the speed of the search [1/kg].
     Real slip;
 };
 

@@ -1,5 +1,5 @@
-// Acceleration of sweeps (docs/methods/region_solver.md 2): Nesterov's extrapolation, restarted when a sweep moves the
-// impulses against the previous direction or by much more than earlier sweeps, and a watchdog that returns to plain
+// Acceleration of sweeps (docs/methods/region_solver.md 2) by Nesterov's extrapolation. It is restarted when a sweep
+// moves the impulses against the previous direction, or by much more than earlier sweeps. A watchdog returns to plain
 // sweeps if there is no progress.
 //
 // T is Real, or Real8 for eight regions in SIMD lanes; the result of each lane is bitwise equal to that of a region
@@ -42,8 +42,8 @@ private:
     T momentum_ = T{} + 1, smallest_change_ = T{} + infinity;
 };
 
-/// The watchdog switches to plain sweeps after this many sweeps without progress, or after half of the sweeps since the
-/// start or the last switch, if that is more.
+/// The watchdog switches to plain (not accelerated) sweeps after this many sweeps without progress. If half of the
+/// sweeps since the start or the last switch is a larger number, that number applies.
 inline constexpr Index watchdog_patience = 60;
 
 /// Decides whether sweeps are accelerated. The version for lanes never intervenes, because lanes do at most
@@ -72,10 +72,11 @@ public:
 private:
     // A squared impulse change below this fraction of `best_` counts as progress.
     static constexpr Real gain = 0.7;
-    // Phase k of plain sweeps has 2^k times this number of sweeps, with k up to most_doublings, and at most most_plain.
+    // A phase is a sequence of plain sweeps. Phase k has 2^k times this number of sweeps, with k up to most_doublings,
+    // but at most most_plain sweeps.
     static constexpr Index plain_sweeps = 200;
     static constexpr Index most_doublings = 7, most_plain = 20000;
-    // Relaxation factor in every second phase, for problems on which plain sweeps cycle.
+    // Relaxation factor in every second phase, for problems on which undamped plain sweeps cycle.
     static constexpr Real damped = 0.8;
 
     void observe(Index iteration, Real change) {

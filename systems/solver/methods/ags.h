@@ -1,4 +1,5 @@
-// Accelerated block Gauss-Seidel method: sweeps with the extrapolation of acceleration.h in between.
+// Accelerated block Gauss-Seidel method: sweeps, with an extrapolation of the impulses (acceleration.h) after each
+// sweep.
 #pragma once
 
 #include "systems/solver/methods/acceleration.h"

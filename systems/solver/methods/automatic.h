@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Estimated costs of a sweep and of a Newton step, measured on 4 GHz cores. The ratio of the costs decides when the
-/// method changes to Newton steps [ns]
+/// Estimated costs of a sweep and of a Newton step [ns], measured on 4 GHz cores. The ratio of the costs decides when
+/// the method changes to Newton steps.
 inline Real sweep_cost(Index contacts, Index couplings) {
     constexpr Real contact_cost = 40, coupling_cost = 2;
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
@@ -64,8 +64,8 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
     }
 }
 
-/// Alternates a few sweeps with coarse corrections by rigid-body modes, while the corrections reduce the error enough.
-/// `steps` grows by the number of Newton steps taken.
+/// Alternates a few sweeps with coarse corrections by rigid-body modes, as long as a correction at least halves the
+/// error. `steps` grows by the number of Newton steps taken.
 template <HasNewtonSteps Op>
 SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps,
                                        const SolveLimits& limits, Index& steps) {
@@ -89,16 +89,16 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
     return result(test.result());
 }
 
-/// Starts with sweeps for about the cost of two Newton steps. The convergence rate of the last sweeps then predicts
-/// whether as many sweeps again (or the remaining allowed sweeps, if these are fewer) would converge. If not, Newton
-/// steps are taken. If the Newton steps fail, the next group of sweeps is twice as long.
+/// Starts with as many sweeps as cost about two Newton steps. The convergence rate of these sweeps then predicts
+/// whether the same number of sweeps again would converge (or the remaining allowed sweeps, if these are fewer). If
+/// not, Newton steps are taken. If the Newton steps fail, the next group of sweeps is twice as long.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // Newton steps do not support the friction pyramid.
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
-    constexpr Real min_sweeps = 16;  // most regions converge within this number of sweeps
+    constexpr Real min_sweeps = 16;  // least number of sweeps before Newton steps; most regions converge within it
     constexpr bool estimates_late = HasNewtonSteps<Op>;
     Real trial = estimates_late ? 0 : newton_trial(op);
     Real sweep_count = std::max(trial, min_sweeps);
@@ -125,8 +125,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.iterations + newton_steps >= limits.max_iterations) break;
         if (estimates_late && trial == 0) {
             trial = newton_trial(op);
-            // Take Newton steps after at most half of the allowed sweeps, unless two steps cost more than
-            // out_of_proportion times all allowed sweeps.
+            // Take Newton steps after at most half of the allowed sweeps. Exception: if two Newton steps cost more than
+            // out_of_proportion times all allowed sweeps, only sweeps are done.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
             sweep_count = trial > out_of_proportion * all ? all : std::min(std::max(trial, min_sweeps), all / 2);

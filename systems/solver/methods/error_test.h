@@ -62,8 +62,8 @@ public:
     }
 
     bool known() const { return known_; }
-    /// offer() that ignores an error that is not finite. It serves the last impulse of a method, which no test has
-    /// checked.
+    /// Variant of offer() that ignores an error that is not finite. It is for the last impulse of a method, which no
+    /// test has checked.
     void offer_last(Real error) {
         if (std::isfinite(error)) offer(error);
     }
@@ -108,7 +108,8 @@ public:
     /// measurement is due, if the change suggests convergence, or after the last sweep.
     bool ends_after_sweep(Index iteration, Real change, Index last) {
         if (limits_.fixed_iterations) return false;
-        // This call resets sums of the sweep, so it must be made exactly once per sweep.
+        // The operator may collect sums during a sweep, and suggests_check() resets them. So it must be called exactly
+        // once per sweep.
         const bool suggested = op_.suggests_check(change, limits_.tolerance);
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }

@@ -46,8 +46,8 @@ public:
     }
 
     /// Takes at most `limit` steps, until the error is within the tolerance or several steps in a row do not lower it.
-    /// The error may rise before the correct sets of sticking and sliding contacts are found. The final impulse is the
-    /// best one. `error` is the error of the present impulse.
+    /// Single steps may raise it, as long as the sets of sticking and sliding contacts are not yet correct. The final
+    /// impulse is the best one. `error` is the error of the present impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
         constexpr Index patience = 4;  // number of steps without a lower error before giving up (docs/decisions/0004)
         const std::span<Vec4> best = op_.workspace(2);
@@ -79,7 +79,7 @@ private:
         return coulomb_impulse(z.head<3>(), contact.normal.head<3>(), contact.mu);
     }
 
-    /// Computes the Newton step d: opening contacts get zero impulse, and the others solve J d = -F with the Jacobian J
+    /// Computes the Newton step d. Contacts that open get zero impulse. All others solve J d = -F with the Jacobian J
     /// of the natural map F. Returns false if the factorisation broke down.
     bool find_change() {
         op_.residual(negative_velocity_);
@@ -107,11 +107,12 @@ private:
     }
 
     /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) of the natural map F, and the right-hand side -F. P' is
-    /// the derivative of P, D the scalar mobilities, W the Delassus operator. The right-hand side includes the impulse
-    /// change of the opening contacts.
+    /// the derivative of P, D the scalar mobilities, W the Delassus operator. The right-hand side includes the effect
+    /// of the opening contacts, whose impulse change is already known.
     void fill_equations() {
-        // If sticking contacts support each other, their impulses are not unique, and the matrix is singular. A small
-        // multiple of the identity selects one solution. It changes the steps but not the solution.
+        // If there are more sticking contacts than the bodies have degrees of freedom, their impulses are not unique,
+        // and the matrix is singular. A small multiple of the identity selects one solution. It changes the steps but
+        // not the solution.
         constexpr Real redundancy = 1e-8;
         const std::vector<Index>& active = memory_.active;
         for (std::size_t a = 0; a < active.size(); ++a) {
@@ -155,8 +156,8 @@ private:
         op_.refresh();
     }
 
-    /// Line search: evaluates the step lengths 1, 1/2, 1/4, ... and takes the first that lowers the merit enough. If
-    /// there is none, takes the length with the smallest merit.
+    /// Line search: evaluates the step lengths 1, 1/2, 1/4, ... and takes the first one that lowers the merit to less
+    /// than `enough` times its start value. If there is none, takes the length with the smallest merit.
     void search_along_change() {
         constexpr int halvings = 6;   // number of step lengths to evaluate (docs/decisions/0004)
         constexpr Real enough = 0.9;  // the merit function must fall below this fraction of its start value

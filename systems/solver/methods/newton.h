@@ -9,12 +9,8 @@
 
 namespace skerry {
 
-/// Takes Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i), where P(z) is the impulse of the friction
-/// law for a contact that the impulse z would stop. r: impulse, u: contact velocity, D: scalar mobility. `error`: error
-/// of the present impulse. The final impulse is the best one.
-///
-/// The steps end when several in a row do not lower the error. A single step may raise the error, before the correct
-/// sets of sticking and sliding contacts are found. The function may overwrite all workspace vectors except slot 0,
+/// The steps end when several in a row do not lower the error. A single step may raise it, as long as the sets of
+/// sticking and sliding contacts are not yet correct. The function may overwrite all workspace vectors except slot 0,
 /// which holds the best iterate.
 SolveResult take_newton_steps(AnyOperator& op, NewtonMemory& memory, Real error, Real tolerance, Index limit);
 

@@ -1,4 +1,4 @@
-// Calls the solver for the name of a method.
+// Runs the solver method that the settings name.
 #pragma once
 
 #include "components/options.h"

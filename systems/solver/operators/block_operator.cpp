@@ -10,7 +10,7 @@ static_assert(ContactOperator<BlockOperator>);
 
 namespace {
 
-/// Returns `start` plus the sum over the off-diagonal blocks of a row, each times the vector of its contact. Three
+/// Returns `start` plus the sum over the off-diagonal blocks of a row of W, each times the vector of its contact. Three
 /// partial sums hide the latency of additions.
 inline Vec4 add_row(const BlockMemory& memory, Index index, const Vec4& start, const Vec4* vector) {
     Vec4 first = start, second = Vec4::Zero(), third = Vec4::Zero();
@@ -123,8 +123,8 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     if (friction_ == Friction::pyramid) {
         next = step_pyramid(contact.diagonal, before, b + times(contact.diagonal, before), contact.mu, relaxation);
     } else {
-        // Rounding in files makes W slightly asymmetric. The skew part of the diagonal block acts on the last impulse,
-        // outside of the local solution.
+        // Rounding in files makes W slightly asymmetric. solve_block uses only the symmetric part of the diagonal
+        // block. So the skew part is multiplied by the last impulse and added to the constant part of the velocity.
         const Vec4 fixed = b + times(contact.skew, before);
         next = padded(solve_block(contact.local, fixed.head<3>(), contact.mu));
         if (relaxation != 1) next = project(i, before + relaxation * (next - before));

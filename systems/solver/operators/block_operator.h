@@ -26,8 +26,8 @@ struct BlockSystem {
     std::span<const Real> mu;
 };
 
-/// A contact problem in the order of the sweep. Data are contiguous and padded to vector registers. The last entry of
-/// every vector is zero.
+/// A contact problem in the order of the sweep. Data are contiguous. Vectors are padded to vector registers by a fourth
+/// entry, which is zero.
 struct BlockMemory {
     struct Contact {
         Vec4 q;
@@ -51,18 +51,18 @@ struct BlockMemory {
     void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// Natural map F_i of a contact with the factor 1 instead of 1/D_i (docs/methods/errors.md 3): residual of the impulse
-/// with respect to its velocity u, for the cone of FCLIB or the pyramid of Lazarevych et al. (2010).
+/// Residual of the impulse with respect to its velocity u, for the cone of FCLIB or the pyramid of Lazarevych et al.
+/// (2010). It is the natural map F_i of a contact with the factor 1 instead of 1/D_i (docs/methods/errors.md 3).
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
-/// Operator of one region: the contacts [begin, end) of `memory`. No block may couple them to contacts of other
-/// regions.
+/// Operator of one region: the contacts [begin, end) of `memory`. No block of W may couple these contacts to contacts
+/// of other regions.
 class BlockOperator {
 public:
     using Number = Real;
 
-    /// `smallest_size` is a lower bound of the norm that divides the error. For one region of a larger problem it is
-    /// the share of this region in the norm of the problem; otherwise it is 0.
+    /// `smallest_size` is a lower bound of the norm by which the error is divided. For one region of a larger problem
+    /// it is the share of this region in the norm of the problem; otherwise it is 0.
     BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size);
 
     Index size() const { return end_ - begin_; }
@@ -110,7 +110,7 @@ private:
     Index begin_, end_;
     Friction friction_;
     Real smallest_size_;
-    Real swept_ = 0;        // estimate of |F|^2, the squared natural map, from the changes of the present sweep
+    Real swept_ = 0;        // estimate of |F|^2, with the natural map F, from the changes of the present sweep
     Real last_swept_ = 0;   // estimate of |F|^2 from the changes of the last complete sweep
     Real calibration_ = 1;  // measured |F|^2 divided by the estimate, at the last measurement
     Real size_ = 0;         // max(|q|, |r|, |u|) at the last measurement

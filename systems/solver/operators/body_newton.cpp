@@ -1,4 +1,4 @@
-// Newton steps of regions that touch rigid bodies: the unknowns, their inertia matrix K, and the steps
+// Newton steps of regions that touch rigid or implicit bodies: the unknowns, their inertia matrix K, and the steps
 // (docs/methods/region_solver.md 5.9).
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -30,8 +30,8 @@ void add_identity(const DenseBlock& block, Index at, Real number) {
 
 }  // namespace
 
-/// Lists the unknowns: first the rigid bodies, then the touched nodes, sorted by their body, by the other body that
-/// they touch, and by row.
+/// Lists the unknowns: first the rigid bodies, then the nodes with contacts, sorted by their body, by the other body
+/// that they touch, and by velocity row.
 void BodyOperator::list_unknowns(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     Column<Index>& unknown_of_row = equations.unknown_of_row();
@@ -74,8 +74,8 @@ Index BodyOperator::body_id_of_node(Index node) const {
 }
 
 /// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or a group of nodes of
-/// one deformable body: those whose first listed contact is with one certain other body. Most of these nodes couple
-/// only within their own body and with that body, which keeps the matrix sparse.
+/// one deformable body that touch the same other body (for a node that touches several bodies its first contact
+/// decides). Most of these nodes couple only to their own body and to that other body, which keeps the matrix sparse.
 void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
@@ -117,7 +117,7 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
     }
 }
 
-/// Couples all parts that share a contact, and all parts of the same implicit body.
+/// Couples the parts whose blocks are nonzero: parts that share a contact, and parts of one implicit body.
 void BodyOperator::couple_parts(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     factor.close_parts();
@@ -156,7 +156,7 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
-    constexpr Index max_parts = 4000;  // the memory for all pairs of parts grows with the square of this
+    constexpr Index max_parts = 4000;  // the memory for all pairs of parts grows with the square of this number
     if (equations.factor().part_count() > max_parts) return equations;
     couple_parts(equations);
     if (!equations.factor().analyse()) return equations;
@@ -168,7 +168,7 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
     // Cost per operation in small blocks, cost per operation in large blocks (which fill the registers), and cost per
-    // contact, measured on a 3 GHz core [ns]
+    // contact, all measured on a 3 GHz core [ns].
     constexpr Real small_operation_cost = 0.25, operation_cost = 0.06, contact_cost = 2000;
     equations.set_cost((runs_ ? operation_cost : small_operation_cost) * work +
                        contact_cost * static_cast<Real>(size()));
@@ -200,7 +200,7 @@ void BodyOperator::assemble(BodyEquations& equations) const {
     equations.keep_inertia();
 }
 
-/// Sets the blocks of K for the touched nodes of a deformable body: the inverse of the matrix of velocity responses to
+/// Sets the blocks of K for the listed nodes of a deformable body: the inverse of the matrix of velocity responses to
 /// impulses on these nodes. The responses include rigid motion and deformation.
 void BodyOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
     const Column<Unknown>& unknown = equations.unknown();
@@ -246,8 +246,8 @@ void BodyOperator::gather(BodyEquations& equations, Column<Real>& velocity) cons
 
 namespace {
 
-/// Impulse of Coulomb's law for a contact that the impulse z would stop, its derivative with respect to z, and the
-/// state of the contact.
+/// Impulse P(z) of Coulomb's law for a contact that the impulse z would stop, the derivative of P with respect to z,
+/// and the state of the contact.
 struct LawImpulse {
     Vec3 impulse;
     Mat3 derivative;
@@ -268,23 +268,23 @@ LawImpulse coulomb_response(const Vec3& z, const Vec3& normal, FrictionLimits mu
     return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose(), false, h};
 }
 
-/// Columns of the contact frame, the last one multiplied by `across`: F S of docs/methods/friction.md 4.2.
+/// Columns of the contact frame, the last one times the friction ratio `across` (F S, docs/methods/friction.md 4.2).
 Mat3 scaled_frame(const RigidPart& part) {
     Mat3 frame = matrix_of(part.frame);
     frame.col(2) *= part.across;
     return frame;
 }
 
-/// Matrix A of the impulse `start - A u / soft` of a sticking contact with the velocity u.
+/// Matrix A of a sticking contact: its impulse at the velocity u is start - A u / soft (`soft`: its compliance).
 Mat3 sticking(const RigidPart& part) {
     if (part.across == 1) return Mat3::Identity();
     const Mat3 scaled = scaled_frame(part);
     return scaled * scaled.transpose();
 }
 
-/// Impulse that the law of a contact gives for the velocity u and the trial impulse `start - u / soft`, and its
-/// derivative. If friction depends on the direction, this is Coulomb's law in scaled variables; the derivative is with
-/// respect to `-u / soft`.
+/// Impulse that the law of a contact gives for the velocity u and the trial impulse z = start - u / soft, and the
+/// derivative of this impulse with respect to z. `soft`: compliance of the contact. If friction depends on the
+/// direction, Coulomb's law is applied to scaled variables, and the derivative is with respect to -u / soft.
 LawImpulse law_impulse(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
     if (part.across == 1) return coulomb_response(start - u / soft, part.frame[0].head<3>(), mu);
     const Mat3 scaled = scaled_frame(part);
@@ -299,15 +299,15 @@ LawImpulse law_impulse(const RigidPart& part, const Vec3& start, const Vec3& u, 
 
 }  // namespace
 
-/// Evaluates the motion `present`. Sets the impulses to P(start - u / (softness D)), where u is the contact velocity, D
-/// the mobility, and P(z) the impulse of Coulomb's law for a contact that the impulse z would stop. `softness` is the
-/// compliance of contacts as a fraction of D. Sets the velocities of the region and `produced` to the motion that these
-/// impulses produce. With d = produced - present and the inertia matrix K, sets the right-hand side to K d and returns
-/// the merit d . K d [J].
+/// Evaluates the motion `present`: sets the impulses r_i = P(start_i - u_i / (softness D_i)), and the velocities of the
+/// region and `produced` to the motion that these impulses produce. u_i: contact velocity. D_i: mobility. P(z): impulse
+/// of Coulomb's law for a contact that the impulse z would stop. `softness`: compliance of the contacts as a fraction
+/// of D_i. With d = produced - present and the inertia matrix K, sets the right-hand side to K d and returns the merit
+/// d . K d [J].
 ///
-/// Unless `evaluation` is `value`, also builds the matrix. If `evaluation` is `turns`, and the region has implicit
-/// bodies, also marks contacts whose sliding direction is opposite to that in the last matrix; stop_reversed then
-/// changes their equations.
+/// Unless `evaluation` is `value`, the function also builds the matrix. If `evaluation` is `turns`, and the region has
+/// implicit bodies, it also marks contacts whose sliding direction is opposite to that in the last matrix.
+/// stop_reversed then changes the equations of these contacts.
 Real BodyOperator::evaluate_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation evaluation) {
     const bool with_matrix = evaluation != Evaluation::value;
     if (with_matrix) equations.start_from_inertia();
@@ -331,10 +331,10 @@ Real BodyOperator::evaluate_motion(BodyEquations& equations, std::span<const Vec
     return merit;
 }
 
-/// Changes the right-hand side for contacts whose sliding direction has reversed. The velocity of such a contact has
-/// passed through sticking, whose range of velocities is small for hard contacts. Newton steps for sliding would jump
-/// over this range again and again. So the matrix treats these contacts as sticking, and the right-hand side contains
-/// the impulses that would stop them.
+/// Changes the right-hand side for contacts whose sliding direction has reversed. Between the two directions lie the
+/// velocities at which the contact sticks. For hard contacts this range is so small that Newton steps for sliding would
+/// jump over it again and again. So the matrix treats these contacts as sticking, and the right-hand side contains the
+/// impulses that would stop them.
 void BodyOperator::stop_reversed(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
@@ -345,8 +345,8 @@ void BodyOperator::stop_reversed(BodyEquations& equations, std::span<const Vec4>
     }
 }
 
-/// Updates the velocities of the region and `produced` from the impulses. With d = produced - present and the inertia
-/// matrix K, sets the right-hand side to K d and returns d . K d [J]
+/// Updates the velocities of the region and `produced` to the motion that the present impulses produce. With d =
+/// produced - present and the inertia matrix K, sets the right-hand side to K d and returns d . K d [J]
 Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
     if (equations.rigid_modes)
         push_rigid_modes(start);
@@ -358,8 +358,8 @@ Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4
     return equations.set_right(equations.change.span());
 }
 
-/// First step of a round after a completed round. It assumes that each contact sticks, slides or is open as in the last
-/// matrix. Returns the merit from evaluate_motion for the new motion, or nothing if the factorisation broke down.
+/// First step of a round, if the round before it converged. It assumes that each contact sticks, slides or is open as
+/// in the last matrix. Returns the merit of the new motion, or nothing if the factorisation broke down.
 std::optional<Real> BodyOperator::step_with_last_states(BodyEquations& equations, std::span<const Vec4> start) {
     equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
@@ -377,10 +377,10 @@ std::optional<Real> BodyOperator::step_with_last_states(BodyEquations& equations
     return evaluate_motion(equations, start, Evaluation::turns);
 }
 
-/// One Newton step from the present motion, whose merit is `merit`, with a line search on the merit from
-/// evaluate_motion. It takes the first step length of 1, 1/2, 1/4, ... that lowers the merit below 0.9 times `merit`,
-/// otherwise the length with the smallest merit. If the step stops contacts, it may take length 1 although the merit
-/// rises, a few times per round. Returns the new merit, or nothing if the factorisation broke down.
+/// One Newton step from the present motion, whose merit is `merit`, with a line search. The step takes the first length
+/// of 1, 1/2, 1/4, ... at which the merit from evaluate_motion is below 0.9 times `merit`. If there is none, it takes
+/// the length with the smallest merit. If it stops contacts whose sliding has reversed, it may take length 1 although
+/// the merit rises, a few times per round. Returns the new merit, or nothing if the factorisation broke down.
 std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real merit) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
@@ -416,12 +416,12 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
 namespace {
 
 // A round is a sequence of Newton steps with fixed start impulses and compliant contacts. The softness is this
-// compliance as a fraction of the mobility D. A smaller value needs fewer rounds, but more steps per round. Regions of
-// soft bodies converge at the largest value, stiff bodies at a hundredth of it, and a light body under a heavy one at a
-// small fraction of the mass ratio. The softness is therefore adapted to the number of steps of the last round.
+// compliance as a fraction of the mobility D. A smaller value needs fewer rounds, but more steps per round. Soft bodies
+// converge at the largest value, stiff bodies at a hundredth of it, and a light body under a heavy one at a small
+// fraction of the mass ratio. So the softness is adapted to the number of steps of the last round.
 constexpr Real max_softness = 0.3, min_softness = 1e-9;
-// Start value for regions with deformable bodies. Rounds converge there even at a small softness, since contacts that
-// reverse their sliding are stopped (stop_reversed).
+// Softness of the first round for regions with deformable bodies. Their rounds converge even at a small softness, since
+// contacts that reverse their sliding are stopped (stop_reversed).
 constexpr Real first_softness = 0.03;
 
 /// Softness (compliance of contacts) of the next round if the last round took this number of steps.
@@ -435,11 +435,11 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
     // If the error of the region has decreased, a round ends when the square root of the merit function d . K d falls
-    // below this fraction of the error at the start of the round.
+    // below this fraction of the error at the start of the round, times the scale of errors.
     constexpr Real enough = 0.1;
-    // If the error has not decreased, the round must be solved more accurately: the limit is multiplied by `solved`.
+    // If the error has not decreased, the round must be solved more accurately: `solved` multiplies the bound above.
     constexpr Real solved = 1e-3;
-    constexpr Index max_steps_in_round = 14;  // a longer round is unlikely to converge soon
+    constexpr Index max_steps_in_round = 14;  // upper limit; a longer round is unlikely to converge soon
     constexpr Real softer = 10;               // factor by which the softness grows after a round that did not converge
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);

@@ -45,8 +45,8 @@ Vec4 BodyOperator::solve_law(Index i, const Vec4& impulse, const Vec4& u) {
     }
     if (own_part.across != 1 || (own_part.term_count > 0 && friction_ == Friction::cone))
         return solve_in_frame(own_part, u - times(own_part.mobility, impulse), contact(i).friction);
-    // The exact step would use the diagonal block W_ii. This step uses an upper bound on the eigenvalues of W_ii
-    // instead: it is exact if W_ii is a scalar times the identity, otherwise it is damped.
+    // The exact step would use the diagonal block W_ii. This step replaces W_ii by an upper bound on its eigenvalues.
+    // It is exact if W_ii is a scalar times the identity, otherwise the step is shorter than the exact one.
     return project(i, impulse - u / own_part.steepest);
 }
 
@@ -96,7 +96,8 @@ void BodyOperator::list_runs() const {
 }
 
 void BodyOperator::for_each_in_sweep(auto&& visit) {
-    // Sweeps with and without runs share one loop, because compilers would not inline the function `visit` twice.
+    // Sweeps with and without runs (ContactRuns) share one loop, because compilers would not inline the function
+    // `visit` twice.
     const ContactRuns::Run all{0, swept_count(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {
@@ -197,7 +198,7 @@ void BodyOperator::extrapolate(Real factor) {
 
 Real BodyOperator::squared_residual(Index i) const {
     if (i >= swept_count()) {
-        // The residual of a cable counts once, at its first point that impulses can move.
+        // All points of a cable have one common residual. It counts once, at the first point that impulses can move.
         for (const Index cable : memory_.cable)
             if (memory_.cable_law[static_cast<std::size_t>(cable)].moving == i)
                 return read_cable(cable).squared_residual();

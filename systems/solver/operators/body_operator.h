@@ -1,6 +1,7 @@
-// Delassus operator of regions with rigid bodies, and also with implicit bodies, clusters, and nodes with their own
-// mass. The blocks of W are 3x3 matrices. Like LumpedOperator it stores the velocities that belong to the impulses. A
-// rigid body has two velocity rows: the velocity of its centre and its spin (docs/methods/rigid_bodies.md 3).
+// Delassus operator W of regions with rigid bodies. They may also contain implicit bodies, clusters, and nodes with
+// their own mass. The blocks of W are 3x3 matrices. Like LumpedOperator, it stores the velocities that the impulses
+// produce. A rigid body has two velocity rows: the velocity of its centre and its spin (docs/methods/rigid_bodies.md
+// 3).
 #pragma once
 
 #include <array>
@@ -20,11 +21,11 @@
 
 namespace skerry {
 
-/// Memory of one region. The LumpedContacts omit nodes of rigid bodies. LumpedContact::diagonal is a third of the trace
-/// of W_ii.
+/// Memory of one region. The LumpedContacts omit nodes of rigid bodies, which RigidPart describes.
+/// LumpedContact::diagonal is a third of the trace of W_ii.
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
-    Index contacts = 0;                   // number of contacts proper; joint blocks and cable points follow them
+    Index contacts = 0;                   // number of contacts without joint blocks and cable points, which follow them
     std::span<const JointLaw> joint;      // by joint block (three rows); block k has the contact index contacts + k
     std::span<const Index> cable;         // indices in cable_law; the points of these cables follow the joint blocks
     std::span<const CableLaw> cable_law;  // by solved cable of the step
@@ -39,8 +40,8 @@ class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, Body
     friend Base;
 
 public:
-    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses. `pool`
-    /// lends memory for Newton steps, `runs` for sweeps over implicit bodies.
+    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must be those that its impulses
+    /// produce. `pool` lends memory for Newton steps, `runs` for sweeps over implicit bodies.
     BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& traversal,
                  NewtonPool& pool, RunPool& runs)
         : Base(memory, friction, scale, traversal), pool_(&pool) {
@@ -66,16 +67,17 @@ public:
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
     Real newton_step_cost() { return newton_memory().cost(); }  // estimate [ns]
     /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies
-    /// (docs/methods/region_solver.md 5.10), in rounds until a round reduces the error little. corrects_rigid_modes()
-    /// is true if the correction pays off: some implicit body is not held, there are no clusters, and there are many
-    /// contacts per body.
+    /// (docs/methods/region_solver.md 5.10). They are taken in rounds, and deformations are updated once per round. The
+    /// rounds end when one reduces the error little. corrects_rigid_modes() is true if the correction pays off: some
+    /// implicit body is not held, there are no clusters, and there are many contacts per body.
     SolveResult correct_rigid_modes(Real error, Real tolerance, Index limit);
     bool corrects_rigid_modes() const;
     Real sweep_cost() const;  // estimate [ns]
 
     /// Velocity of a contact [m/s]
     Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
-    /// Velocity of a contact without its offset, for the velocity rows `velocity` [m/s]
+    /// Velocity of a contact without its offset (the part that no impulse changes), for the velocity rows `velocity`
+    /// [m/s]
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
@@ -85,12 +87,12 @@ public:
         traversal_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
-    /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
+    /// Squared energy norm of the impulse that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const {
         return part(i).along_normal > 0 ? speed * speed / part(i).along_normal : 0;
     }
-    /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
-    /// [J]
+    /// Gauss-Seidel step of the split impulse for contact i (push_contact.h). Changes the pseudo velocities `velocity`
+    /// and the push impulse `impulse`. Returns the squared energy norm of the change of the impulse [J]
     [[gnu::always_inline]] Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
         const Real mobility = part(i).along_normal;
         if (!(mobility > 0)) return 0;
@@ -119,8 +121,8 @@ public:
         for (const Index k : {i, i + 1}) rate += joint(k)->mimic * part(k).frame[2].dot(velocity_of(k));
         return rate;
     }
-    /// Solves the mimic row with the blocks i and i + 1 while all other impulses stay. `apply(k, change)` changes the
-    /// impulse of block k. Returns the squared energy norm of the change [J]
+    /// Solves the mimic equation of the blocks i and i + 1 while all other impulses stay. `apply(k, change)` changes
+    /// the impulse of block k. Returns the squared energy norm of the change [J]
     Real solve_mimic(Index i, Real relaxation, auto&& velocity_of, auto&& apply) const {
         const Real change = -relaxation * mimic_rate(i, velocity_of) * contact(i).inverse_diagonal;
         for (const Index k : {i, i + 1}) apply(k, Vec4(joint(k)->mimic * change * part(k).frame[2]));
@@ -132,8 +134,8 @@ private:
     bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }
     Real squared_residual(Index i) const;  // uses a third of the trace of the diagonal block W_ii as mobility D
     const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
-    /// Adds the velocity change by `impulse` to `velocity`. An impulse on an implicit body moves all its touched nodes,
-    /// so the impulses are first summed by node, and each node is then processed once.
+    /// Adds the velocity change by `impulse` to `velocity`. An impulse on an implicit body moves all nodes of the body
+    /// that have contacts. So the impulses are first summed by node, and each node is then processed once.
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
@@ -154,7 +156,8 @@ private:
     BodyEquations* rigid_mode_memory();
     void start_rigid_round(BodyEquations& equations);
     void push_rigid_modes(std::span<const Vec4> start);
-    /// Step of the split impulse that makes the part `held_velocity` of the pseudo velocity of a tie zero.
+    /// Step of the split impulse for a tie. `held_velocity`: part of the pseudo velocity of the tie that the tie locks.
+    /// The step makes this part zero.
     Real push_tie(Index i, const Vec4& held_velocity, Vec4* velocity) const;
     std::optional<Real> step_with_last_states(BodyEquations& equations, std::span<const Vec4> start);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real merit);
@@ -186,8 +189,8 @@ private:
     /// its law.
     const CableLaw& read_cable(Index cable) const;
     void list_runs() const;
-    /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run move at
-    /// once; the others follow at the end of the run (ContactRuns).
+    /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run (a short
+    /// sequence of contacts, see ContactRuns) move at once. The other nodes follow at the end of the run.
     void apply(Index i, const Vec4& impulse);
 
     NewtonPool* pool_;

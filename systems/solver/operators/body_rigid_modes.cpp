@@ -21,8 +21,8 @@ bool BodyOperator::is_unknown(const BodyEquations& equations, Index node) const 
     return !(equations.rigid_modes && traversal_.moves_with_rigid(node));
 }
 
-/// With few contacts per body, sweeps alone are faster than sweeps with the coarse correction. Piles of cubes with 27
-/// nodes have about 20 contacts per body; with the correction they would take a sixth longer.
+/// True if the coarse correction pays off. With few contacts per body, sweeps alone are faster. For example, piles of
+/// cubes with 27 nodes have about 20 contacts per body; with the correction they would take a sixth longer.
 bool BodyOperator::corrects_rigid_modes() const {
     constexpr Index many = 48;  // contacts per body
     if (!runs_ || touches_clusters()) return false;
@@ -48,8 +48,8 @@ BodyEquations* BodyOperator::rigid_mode_memory() {
     return std::isfinite(equations.cost()) ? &equations : nullptr;
 }
 
-/// Computes and stores the velocities that the impulses produce, including deformations. The deformation velocities
-/// stay fixed during the round.
+/// Computes and stores the velocities that the present impulses produce, including deformations. The deformation
+/// velocities stay fixed during the round.
 void BodyOperator::start_rigid_round(BodyEquations& equations) {
     refresh();
     std::ranges::copy(memory_.velocity, memory_.scratch.begin());
@@ -60,8 +60,8 @@ void BodyOperator::start_rigid_round(BodyEquations& equations) {
             velocity(i).head<3>() - equations.velocity(i, equations.present.span());
 }
 
-/// Updates the velocities for the change of the impulses since `start`, without deforming implicit bodies. The stored
-/// velocities in `scratch` belong to the impulses `start`.
+/// Updates the velocities for the change of the impulses since the start of the round, without deforming implicit
+/// bodies. `start`: impulses at the start. `scratch` holds the velocities that these impulses produce.
 void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
     std::ranges::copy(memory_.scratch, memory_.velocity.begin());
     for (Index i = 0; i < size(); ++i) {
@@ -71,11 +71,12 @@ void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
 }
 
 SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
-    // Compliance of the contacts in a round, as a fraction of the mobility D. It stands for the deformation that a
-    // round leaves out. If it is below the compliance of the bodies, rounds reduce the error too little.
+    // Compliance of the contacts in a round, as a fraction of the mobility D. It replaces the deformation of the
+    // bodies, which a round leaves out. If it is below the compliance of the bodies, rounds reduce the error too
+    // little.
     constexpr Real softness = 0.3;
     // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
-    // start of the round.
+    // start of the round, times the scale of errors.
     constexpr Real enough = 0.01;
     // Another round follows if the error after a round is below this fraction of the error before the round.
     constexpr Real gain = 0.5;

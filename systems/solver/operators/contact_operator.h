@@ -46,11 +46,12 @@ concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number nu
     // One sweep with this relaxation factor: solves the contacts exactly, one after the other.
     { op.accelerated_sweep(relaxation) } -> std::same_as<SweepChangeOf<typename Op::Number>>;
     { op.error() } -> std::same_as<typename Op::Number>;  // error of the present impulse
-    // Call once per sweep, with the change by the sweep and the tolerance. True if the error may be within the
-    // tolerance.
+    // Call once per sweep, with the squared change of the impulses by the sweep, and the tolerance. True if the error
+    // may be within the tolerance.
     op.suggests_check(number, relaxation);
     op.remember();  // stores the present impulses and velocities as the previous ones
-    // present += number (present - previous); previous = old present
+    // Extrapolates the impulses and velocities: present += number (present - previous), with the old present values
+    // stored as the previous ones.
     op.extrapolate(number);
     op.refresh_all();  // recomputes the stored velocities of present and previous impulses
 };

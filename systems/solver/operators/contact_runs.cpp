@@ -91,7 +91,8 @@ void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGrou
 void ContactRuns::list_patches(std::span<const LumpedContact> contact, const ThroughGroups& traversal,
                                std::size_t first_node, Run& run) {
     std::sort(node_.begin() + static_cast<std::ptrdiff_t>(first_node), node_.end());
-    // Sorting by rows of the region groups the nodes by body, because the touched nodes of a body are consecutive rows.
+    // Sorting by rows of the region groups the nodes by body, because the nodes of a body that have contacts are
+    // consecutive rows.
     for (std::size_t begin = first_node; begin < node_.size();) {
         const std::size_t body = traversal.body_of(node_[begin]);
         std::size_t end = begin;

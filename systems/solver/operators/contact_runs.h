@@ -1,9 +1,9 @@
 // Sweeps over contacts on implicit bodies (docs/methods/implicit_bodies.md 4).
 //
-// An impulse on a node moves all touched nodes of its body, but the next contacts of a sweep need only the new
-// velocities of their own nodes. So the contacts are divided into *runs*: sequences of consecutive contacts with few
-// nodes. During a run, impulses move only the nodes of the run. At its end, the sums of the impulses by node move all
-// other nodes. The result is that of a plain sweep, up to rounding.
+// An impulse on a node moves all touched nodes of its body, those with contacts. But the next contacts of a sweep need
+// only the new velocities of their own nodes. So the contacts are divided into *runs*: sequences of consecutive
+// contacts with few nodes. During a run, impulses move only the nodes of the run. At the end of the run, the sums of
+// the impulses by node move all other touched nodes. The result is that of a sweep without runs, up to rounding.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ namespace skerry {
 
 using PaddedMat3 = Eigen::Matrix<Real, 4, 3>;  // a 3x3 matrix padded with a row of zeros
 
-/// Impulses on touched nodes of one implicit body, and their total effect on all touched nodes of the body.
+/// Impulses on nodes of one implicit body, and the velocities that they cause at all nodes of the body that have
+/// contacts (the touched nodes).
 class SpreadImpulses {
 public:
     SpreadImpulses() = default;
@@ -41,7 +42,8 @@ private:
 /// Runs of the contacts of one region. Memory is reused for the next region.
 class ContactRuns {
 public:
-    /// A run: consecutive contacts, and the range of patches with the nodes of these contacts.
+    /// A run: consecutive contacts, and the range of patches with the nodes of these contacts. A patch contains the
+    /// nodes of one body.
     struct Run {
         Index begin, end;
         std::size_t first_patch, last_patch;
@@ -50,8 +52,8 @@ public:
     /// Begins another region, whose runs are not listed yet.
     void start() { run_.clear(); }
     bool listed() const { return !run_.empty(); }
-    /// Lists the runs. `most_nodes` limits the number of nodes per run. A small limit spreads impulses to all nodes
-    /// more often; a large limit moves more nodes at each contact.
+    /// Lists the runs. `most_nodes`: upper limit of the number of nodes per run. A small limit spreads impulses to all
+    /// nodes more often; a large limit moves more nodes at each contact.
     void list(std::span<const LumpedContact> contact, const ThroughGroups& traversal, std::size_t rows,
               std::size_t most_nodes = 24);
     std::span<const Run> runs() const { return run_; }
@@ -60,7 +62,7 @@ public:
                Vec4* velocity);
     /// Applies the summed impulses of a run to the touched nodes outside of the run. Call it at the end of the run.
     void spread(const Run& run, const ThroughGroups& traversal, Vec4* velocity);
-    /// Number of node velocities that a sweep updates, counting repeated updates.
+    /// Number of node velocities that a sweep updates, counting repeated updates; for the estimate of its cost.
     Real moved() const { return moved_; }
 
     /// Returns zeroed impulse sums by velocity row of the region, for impulses that belong to no run: those of cables,
@@ -78,12 +80,13 @@ private:
     struct Patch {
         std::size_t first, count, first_block;
         std::size_t body;  // row of RigidBodyTable
-        Index first_row;   // region row of the first touched node of the body
+        Index first_row;   // row in the region of the first touched node of the body
     };
-    /// Nodes of the run that an impulse on one node of a contact moves. `count` is 0 if this node is on no implicit
-    /// body.
+    /// Nodes of the run that move when an impulse acts on one node of a contact. `count` is 0 if this node is on no
+    /// implicit body.
     struct MovedNodes {
-        // `first`, `self`: indices in node_; `row`: index in block_ of the first of `count` blocks
+        // `first`: index in node_ of the first moved node. `self`: index in node_ of the node on which the impulse
+        // acts. `row`: index in block_ of the first of `count` blocks.
         std::size_t first, count, self, row;
     };
 

@@ -14,7 +14,7 @@ struct LumpedMemory : ContactMemory {
 };
 
 /// Operator of a region with lumped masses. For a given order of the contacts, the bits of the impulses do not depend
-/// on the type of the traversal, but the bits of sums do.
+/// on the type of the traversal. The bits of sums over contacts do, because each traversal adds them in its own order.
 template <RegionTraversal Traversal>
 class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Traversal>, Traversal, LumpedMemory> {
     using Base = RegionOperatorBase<LumpedOperatorBy<Traversal>, Traversal, LumpedMemory>;
@@ -23,7 +23,8 @@ class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Traversal>, 
 public:
     using Base::size;
 
-    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses.
+    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must be those that its impulses
+    /// produce.
     LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Traversal& traversal = {})
         : Base(memory, friction, scale, traversal) {}
 
@@ -37,10 +38,10 @@ public:
 
     /// Velocity of a contact [m/s]
     Vec4 velocity(Index i) const { return contact_velocity(contact(i), memory_.velocity.data()); }
-    /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
+    /// Squared energy norm of the impulse that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const { return contact(i).inverse_diagonal * speed * speed; }
-    /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
-    /// [J]
+    /// Gauss-Seidel step of the split impulse for contact i (push_contact.h). Changes the pseudo velocities `velocity`
+    /// and the push impulse `impulse`. Returns the squared energy norm of the change of the impulse [J]
     Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
         return push_contact(contact(i), bias, velocity, impulse, apply_by(traversal_));
     }
@@ -81,8 +82,8 @@ private:
         };
     }
 
-    // extrapolate() updates the velocities at once. While `waiting_` is true, the impulses still have to be
-    // extrapolated by `factor_`; the next sweep does it, because it visits them anyway.
+    // extrapolate() extrapolates the velocities at once, but postpones the impulses. While `waiting_` is true, they
+    // still have to be extrapolated by `factor_`. The next sweep does it, because it visits the impulses anyway.
     bool waiting_ = false;
     Real factor_ = 0;
 };
@@ -101,7 +102,8 @@ void LumpedOperatorBy<Traversal>::settle() {
 template <RegionTraversal Traversal>
 void LumpedOperatorBy<Traversal>::extrapolate(Real factor) {
     settle();
-    // Velocities are an affine function of the impulses, so extrapolating both by one factor keeps them consistent.
+    // Velocities are an affine function of the impulses. If both are extrapolated by the same factor, the velocities
+    // remain those that the impulses produce.
     traversal_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
     });

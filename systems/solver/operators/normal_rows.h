@@ -15,7 +15,8 @@ struct NormalMemory {
     std::span<Real> impulse, previous;
 };
 
-/// The constructor reads region.impulse, which must point along the normals. keep() writes the impulses back.
+/// The constructor reads region.impulse, which must point along the normals. keep() writes the normal impulses back to
+/// region.impulse.
 class NormalRows {
 public:
     using Number = Real;
@@ -61,7 +62,8 @@ public:
     }
     void extrapolate(Real factor) {
         extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.previous);
-        // Velocities are an affine function of the impulses, so extrapolating both by one factor keeps them consistent.
+        // Velocities are an affine function of the impulses. If both are extrapolated by the same factor, the
+        // velocities remain those that the impulses produce.
         extrapolate_range(0, region_.velocity.size(), factor, region_.velocity, region_.scratch);
     }
     /// Recomputes the velocities from the impulses, so that rounding errors of extrapolations do not accumulate.

@@ -1,5 +1,6 @@
-// Shared functions of operators for regions in a step of the engine. These operators store the velocities that belong
-// to the impulses. A contact step is therefore a gather and a scatter.
+// Shared functions of operators for regions in a step of the engine. These operators store the velocities that the
+// impulses produce. So a contact step reads the velocities of the contact's nodes, solves the contact, and writes these
+// velocities back.
 #pragma once
 
 #include <array>
@@ -21,13 +22,13 @@ struct ContactMemory {
     std::span<Vec4> impulse;      // [N s]
     std::span<Vec4> velocity;     // velocities that include the effect of the impulse [m/s, rad/s]
     std::span<const Index> node;  // by velocity row: row of NodeTable, or no_index for rigid bodies
-    std::span<Vec4> scratch;      // by velocity row: velocities of the previous impulses, or temporary in multiply()
+    std::span<Vec4> scratch;      // by velocity row: velocities for the previous impulses; multiply() overwrites them
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
 };
 
-/// Base class of operators. `Own` derives from this class and adds sweeps. It also defines moves() (whether a contact
-/// can move anything), squared_residual() (the contact's term in the squared error), free_velocity() (velocity without
-/// impulses) and add_response() (velocity change by impulses).
+/// Base class of operators. `Own` is the operator: it derives from this class and adds sweeps. It also defines moves()
+/// (whether a contact can move anything), squared_residual() (the contact's term in the squared error), free_velocity()
+/// (velocity without impulses) and add_response() (velocity change by impulses).
 template <class Own, RegionOrder Traversal, class Memory>
 class RegionOperatorBase {
 public:
@@ -75,8 +76,8 @@ public:
         if (sum < least_energy) return 0;
         return std::sqrt(sum) / scale_;
     }
-    /// True if the error is worth measuring. The change of a sweep approximates the natural map at the start of the
-    /// sweep, so a small change suggests a small error.
+    /// True if the error is worth measuring. A sweep changes the impulses approximately by the natural map at the start
+    /// of the sweep, which is also the measure of the error. So a small change suggests a small error.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     void residual(std::span<Vec4> out) {
         own().settle();

@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Traversal with one thread, in ascending order of the contacts. All nodes of a touched cluster must be consecutive
-/// rows of the region, in the order of the cluster, including nodes without contacts.
+/// Traversal with one thread, in ascending order of the contacts. All nodes of a cluster that contacts touch must be
+/// consecutive rows of the region, in the order of the cluster. This includes the cluster's nodes without contacts.
 class ThroughClusters : public OneThread {
 public:
     static constexpr bool own_masses = false;

@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// Traversal by one thread, in ascending order of the contacts. The touched nodes of an implicit body must be
-/// consecutive rows of the region, in the order of ImplicitCoupling.
+/// Traversal by one thread, in ascending order of the contacts. The nodes of an implicit body that have contacts must
+/// be consecutive rows of the region, in the order of ImplicitCoupling.
 class ThroughGroups : public OneThread {
 public:
     /// `node` lists the rows of NodeTable of the region's nodes.
@@ -22,7 +22,8 @@ public:
 
     bool any_deforms() const { return implicit_->any(); }
     /// Applies an impulse of a contact to all nodes that are on no implicit body. For nodes of implicit bodies it adds
-    /// the weighted impulse to `sum`, the input of SpreadImpulses, by node of the region.
+    /// the weighted impulse to `sum`, which has one entry per node of the region. SpreadImpulses later computes the
+    /// motion of the implicit bodies from these sums.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (touched_index(contact.node[a]) == no_index)
@@ -36,8 +37,9 @@ public:
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Applies an impulse to all nodes that are on no implicit body. The function serves corrections in which implicit
-    /// bodies do not deform: the split impulse and rigid-body modes. Other code moves the rigid bodies.
+    /// Applies an impulse to all nodes that are on no implicit body. It serves corrections in which implicit bodies do
+    /// not deform: the split impulse and rigid-body modes. The caller moves the rigid bodies and the frames of implicit
+    /// bodies.
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
@@ -72,7 +74,7 @@ public:
                rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }
     const ImplicitCoupling& deforming() const { return *implicit_->coupling; }
-    /// Index of node `n` among the touched nodes of its implicit body, or no_index.
+    /// Index of node `n` among the nodes of its implicit body that have contacts, or no_index.
     Index touched_index(Index n) const {
         const Index row = node_[static_cast<std::size_t>(n)] == no_index
                               ? no_index

@@ -11,8 +11,8 @@
 namespace skerry {
 
 /// A region that BodyOperator solves. Its velocity rows are: two per rigid or implicit body (velocity, angular
-/// velocity), then touched nodes of implicit bodies, then nodes of clusters, then other nodes. In the columns by
-/// contact, rows of joints follow those of contacts; points of cables come last.
+/// velocity), then the nodes of implicit bodies that have contacts, then nodes of clusters, then other nodes. In the
+/// columns by contact, rows of joints follow those of contacts; points of cables come last.
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
     std::span<const Index> cable;  // indices of the cables that the region solves
@@ -26,8 +26,8 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
         return memory.node[n] != no_index &&
                stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }
-    /// Method of the settings if it supports all rows of the region, otherwise `ags`. Regions with joints or cables
-    /// support only the sweeps of `ags`. Regions with friction that depends on the direction also support `automatic`.
+    /// Method of the settings if it supports all rows of the region, otherwise `ags`. For regions with joints or cables
+    /// this is always `ags`. Regions with friction that depends on the direction support only `ags` and `automatic`.
     SolverMethod method(const SolverSettings& settings) const {
         const bool any = joint.empty() && cable.empty() && (!has_axes || settings.method == SolverMethod::automatic);
         return any ? settings.method : SolverMethod::ags;

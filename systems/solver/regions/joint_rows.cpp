@@ -30,8 +30,8 @@ struct BodyMotion {
     Vec3 at_point() const { return velocity + turning(); }
 };
 
-/// Half of the acceleration of the joint error in the frame of the second body while both bodies move freely. Times h
-/// it is the second-order part of the mean rate of the error in the step [m/s^2 or rad/s^2]
+/// Half of the acceleration of the joint error, in the frame of the second body, while both bodies move freely. h times
+/// this vector is the second-order part of the mean rate of the error in the step [m/s^2 or rad/s^2]
 Vec3 half_acceleration(bool rotational, const BodyMotion& first, const BodyMotion& second) {
     if (rotational) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
     const Vec3 first_acceleration = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
@@ -39,8 +39,8 @@ Vec3 half_acceleration(bool rotational, const BodyMotion& first, const BodyMotio
     return (first_acceleration + second_acceleration) / 2 - second.spin.cross(first.at_point() - second.velocity);
 }
 
-/// Upper bound of the speed at which a joint error is corrected, which avoids jerks: recovery_speed (translation) or 1
-/// rad/s (rotation), plus the rotational speeds of both bodies [m/s or rad/s]
+/// Upper bound of the speed at which a joint error is corrected: recovery_speed (translation) or 1 rad/s (rotation),
+/// plus the rotational speeds of both bodies. Faster corrections would cause jerks [m/s or rad/s]
 Real max_correction_speed(const RegionStage& stage, bool rotational, const BodyMotion& first,
                           const BodyMotion& second) {
     constexpr Real turning = 1;  // [rad/s]
@@ -50,9 +50,9 @@ Real max_correction_speed(const RegionStage& stage, bool rotational, const BodyM
 
 /// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
 void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds) {
-    // Greatest (omega h)^2, with omega^2 = stiffness * mobility, at which the spring force is evaluated at the start of
-    // the step alone, so that its energy error stays bounded. Stiffer springs are evaluated partly at the end of the
-    // step.
+    // Upper limit of (omega h)^2, with omega^2 = stiffness * mobility. Up to this limit, the spring force is evaluated
+    // at the start of the step alone, and its energy error stays bounded. Stiffer springs are evaluated partly at the
+    // end of the step.
     constexpr Real at_start = 0.5;
     const JointPassiveRow& passive = axis.passive;
     const Real frequency = h * axis.kick * passive.stiffness * mobility;
@@ -74,8 +74,8 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real max_speed)
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real distance = axis.motor.target - axis.coordinate;
-    // Greatest speed from which half of the motor force `most` stops within `distance`: v^2 = 2 a |distance| with the
-    // deceleration a = most mobility / 2. The other half is reserved for loads.
+    // Greatest speed from which half of the motor force `most` stops the joint within `distance`: v^2 = 2 a |distance|
+    // with the deceleration a = most mobility / 2. The other half of the force is reserved for loads.
     const Real braking_speed = std::sqrt(axis.motor.most * mobility * std::abs(distance));
     const Real approach_speed = std::copysign(std::min(std::abs(distance) / h, braking_speed), distance);
     bounds.target = std::clamp(axis.target_rate + approach_speed, -axis.motor.most_speed, axis.motor.most_speed);

@@ -24,11 +24,10 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 /// The equation is solved with `first`; the block `leader` gets mobility 0, so sweeps skip it.
 void load_mimic(const LoadedJoint& first, const LoadedJoint& leader);
 
-/// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The error of the
-/// joint block at the end of the step is predicted from the velocities of the region. The part of the error that is
-/// left for later steps, because the correction speed is bounded, is subtracted. The remaining error divided by h is
-/// added to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows
-/// of rotation]
+/// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The position
+/// error at the end of the step is predicted from the velocities of the region. The correction speed is bounded, so a
+/// part of the error may remain for later steps; this part is subtracted. The difference divided by h is added to the
+/// offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const LoadedJoint& loaded);
 

@@ -1,4 +1,4 @@
-// Queue of small regions. Regions wait until a SIMD batch of their size class is full.
+// Queue of small regions. A region waits until there are enough regions of similar size to fill all SIMD lanes.
 #pragma once
 
 #include "systems/solver/lanes/solve_lane_batch.h"

@@ -17,7 +17,7 @@ namespace skerry {
 /// replaces the functions from moves_node() on.
 template <RegionOrder Traversal, class Memory>
 struct LoadedRegion {
-    std::span<const Index> row;  // rows of ContactTable, by number of the contact in the region
+    std::span<const Index> row;  // by number of the contact in the region: row of ContactTable
     Index base = 0;              // row of the first contact of the region in the columns by contact
     Traversal traversal{};
     Memory memory{};
@@ -34,8 +34,8 @@ struct LoadedRegion {
     void take_joint_impulses(const RegionStage&) const {}
     /// Solves the region again if its joints would not hold at the end of the step.
     void hold_joints(const RegionStage&, auto&, RegionOutcome&) const {}
-    /// Adds the impulse of a contact to the touched rigid and implicit bodies, and writes the velocities of the
-    /// contact's nodes on them.
+    /// Adds the impulse of a contact to the rigid and implicit bodies that it touches, and writes the velocities of its
+    /// nodes on these bodies.
     void write_contact(const RegionStage&, std::size_t) const {}
     /// Writes the impulses of joints and cables.
     void write_joints(const RegionStage&) const {}
@@ -89,7 +89,8 @@ private:
 
 /// Load: writes the contacts in the order of the traversal, and zero impulses. `load(position, number, contact)` fills
 /// a contact and returns the contact velocity without impulses; it may add nodes to the NodeList. `position`: index in
-/// the order of the traversal. `number`: index in region.row. Adds the sums over contacts to the sums over joints.
+/// the order of the traversal. `number`: index in region.row. Adds the sums over contacts to region.sums, which already
+/// contains those over joints and cables.
 template <class Region, class Load>
 void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     RegionMemory& data = stage.memory;
@@ -130,9 +131,9 @@ template <class Region, RegionOperator Op>
 bool start_region(const RegionStage& stage, const Region& region, Op& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        // If the scale is zero, nothing moves, and zero impulses are the solution. The error of any other start has no
-        // scale. Regions whose contacts separate use the warm start, too: with a fixed number of iterations, a sweep
-        // must not depend on how contacts are split into regions.
+        // If the scale is zero, nothing moves, and zero impulses are the solution. The relative error of any other
+        // start would be infinite. Regions whose contacts separate use the warm start, too: with a fixed number of
+        // iterations, a sweep must not depend on how contacts are split into regions.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region, op);
         return false;
     }

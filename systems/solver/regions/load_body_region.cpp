@@ -25,8 +25,8 @@ public:
                    .traversal = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
                                               stage.inputs.implicit, stage.inputs.rigid, list_.node()),
                    .memory = memory_of(rows, base),
-                   // Joints and cables are not checked for stillness, so regions with them never use the tolerance of
-                   // still regions.
+                   // Whether bodies are still is checked only for the bodies of contacts. So regions with joints or
+                   // cables never use the tolerance of still regions.
                    .tolerance = rows.joint.empty() && rows.cable.empty() ? tolerance_of(stage, rows.contact)
                                                                          : stage.settings.tolerance},
                   rows.joint,
@@ -69,7 +69,8 @@ private:
         return memory;
     }
 
-    /// Adds velocity rows of the rigid bodies, the touched nodes of implicit bodies, and the nodes of clusters.
+    /// Adds velocity rows of the rigid bodies, of the nodes of implicit bodies that have contacts, and of the nodes of
+    /// clusters.
     void add_velocity_rows() {
         const RigidInputs& rigid = stage_.inputs.rigid;
         for (const Index body : region_.rigid) {
@@ -109,7 +110,7 @@ private:
                                              : stage_.inputs.rigid.position[static_cast<std::size_t>(node)];
                 if (body != no_index)
                     add_term(part, body, acts_at, weight, [&] {
-                        // Vector from the core of a round body to the contact point on its surface.
+                        // Moment arm from the core of a round body to its surface.
                         return is_tie ? Vec3(Vec3::Zero())
                                       : rigid.beside_core(node, weight, row, contact_normal(i), stage_.inputs.touch);
                     });
@@ -136,8 +137,9 @@ private:
         }
     }
 
-    /// Loads a point of a cable. LumpedContact::offset gets the velocity of the held nodes, or of the collider at the
-    /// point. `acts_at`: point at which impulses act on rigid and implicit bodies; null: the nodes of the point.
+    /// Loads a point of a cable. LumpedContact::offset gets the velocity that no impulse changes: that of held nodes
+    /// plus CableBlockTable::velocity. `acts_at`: point at which impulses act on rigid and implicit bodies; null: the
+    /// nodes of the point.
     void load_point(std::size_t point, const Vec3* acts_at, LumpedContact& contact, RigidPart& part) {
         const RigidNodes& rigid = stage_.inputs.rigid.nodes;
         const Stencil& stencil = stage_.inputs.cables.stencil[point];

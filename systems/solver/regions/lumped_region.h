@@ -54,7 +54,7 @@ void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Traversal>& reg
     });
 }
 
-/// Loads a region for one thread. New nodes are added to `list`, behind the nodes it already contains.
+/// Loads a region for one thread. New nodes are added to the end of `list`.
 template <RegionTraversal Traversal>
 void load_listed(const RegionStage& stage, NodeList& list, LumpedRegion<Traversal>& region) {
     const auto local = [&](Index node) { return list.index_of(node, [&] { return free_velocity_of(stage, node); }); };

@@ -17,7 +17,7 @@ template <class Op>
 concept RegionOperator = ContactOperator<Op> &&
     requires(const Op& op, Index i, Real number, Vec4* velocity, Real& impulse) {
     { op.velocity(i) } -> std::same_as<Vec4>;  // velocity u of contact i for the present impulse
-    // squared energy norm [J] of a push that changes the normal speed of contact i by `number` [m/s]
+    // squared energy norm [J] of the impulse that changes the normal speed of contact i by `number` [m/s]
     { op.push_size(i, number) } -> std::same_as<Real>;
     // One contact step of the split impulse, which changes the pseudo velocities.
     { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;
@@ -28,7 +28,7 @@ concept RegionOperator = ContactOperator<Op> &&
 struct PushedContacts {
     /// True if rotation of bodies may reduce gaps.
     bool any_rotation() const { return false; }
-    /// Rate of change of a contact's gap by rotation, if rotation shrinks the gap; otherwise 0. So it is never positive
+    /// Rate of change of a contact's gap by rotation if rotation shrinks the gap, otherwise 0; it is never positive
     /// [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
     /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
@@ -48,15 +48,15 @@ public:
           velocity_(region.memory.scratch),
           slop_(push_slop(stage.inputs.gravity, stage.h)) {}
 
-    /// Computes the pseudo velocities. Returns false if all are zero. `pressed`: some contact penetrates by more than
-    /// the slop.
+    /// Computes the pseudo velocities. Returns false if all are zero. `pressed`: true if some contact penetrates by
+    /// more than the slop, the depth up to which penetrations are not corrected.
     bool run(bool pressed) {
         clear();
         const Requested requested = request();
         if (!pressed && !requested.by_rotation) return false;
         sweep(requested.size);
-        // The push rotates bodies, and rotation changes the gaps of contacts. This number of times, the loss of gap is
-        // computed again with the new rotation, and more sweeps compensate for it.
+        // The push rotates bodies, and rotation changes the gaps of contacts. So the loss of gap is computed again with
+        // the new rotation, and more sweeps compensate for it. This is done `rotation_rounds` times.
         constexpr int rotation_rounds = 2;
         for (int round = 0; round < rotation_rounds && others_.any_rotation(); ++round) sweep(request().size);
         return true;
@@ -78,7 +78,7 @@ private:
     }
 
     Requested request() {
-        // Only regions of one thread have capsules or cylinders, so no two threads write this flag.
+        // Only regions that one thread solves have capsules or cylinders, so no two threads write this flag.
         bool by_rotation = false;
         const Real size =
             region_.traversal.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
@@ -102,9 +102,9 @@ private:
 
     void sweep(Real requested) {
         if (sweep_rows(region_.tolerance * region_.tolerance * requested, false)) return;
-        // Joints and ties can prevent a contact from being pushed apart. They take precedence, so the last sweeps are
-        // over joints and ties only: with an error in their positions the next velocity solve would demand a motion
-        // that the contact forbids.
+        // Joints and ties can prevent a contact from being pushed apart. In this case they take precedence, and the
+        // last sweeps are over joints and ties only. Otherwise their positions would keep an error, and the next
+        // velocity solve would demand a motion that the contact forbids.
         constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
         sweep_rows(rounding * requested, true);
     }
@@ -137,11 +137,11 @@ private:
     const Real slop_;
 };
 
-/// Finds frictionless pseudo velocities p, with the normal part p_n. Contacts that penetrate by more than the slop get
-/// u_n + p_n >= min(recovery |gap| / h, recovery_speed), where u_n is their normal velocity after the velocity solve;
-/// the right-hand side is also limited by push_speed. At other contacts p allows no approach that the velocity solve
-/// would not allow. The solution of the velocity solve must already be in `stage.out`. The result is in
-/// region.memory.scratch. Returns false if no contact is pushed.
+/// Finds frictionless pseudo velocities p, which move positions only. p_n: normal part of p. u_n: normal velocity of a
+/// contact after the velocity solve. Contacts that penetrate by more than the slop (push_slop) get u_n + p_n >=
+/// min(recovery |gap| / h, recovery_speed); push_speed limits the right-hand side further. At other contacts p allows
+/// no approach that the velocity solve would not allow. The solution of the velocity solve must already be in
+/// `stage.out`. The result is in region.memory.scratch. Returns false if no contact is pushed.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);

@@ -1,5 +1,5 @@
-// Additions to the split impulse: it also holds joints, and replaces the gap that capsules and cylinders lose by
-// rotation.
+// Additions to the split impulse: it also holds joints, and compensates the loss of gap when capsules and cylinders
+// rotate.
 #pragma once
 
 #include <span>

@@ -40,7 +40,7 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
     std::size_t room = 4 * stencils;
     for (const Index body : memory.region_rigid[r]) {
         room += 2;
-        // An impulse moves all touched nodes of the body, so the region needs rows for all of them.
+        // An impulse moves all nodes of the implicit body that have contacts, so the region needs rows for all of them.
         if (inputs.implicit.any()) room += inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)].size();
     }
     for (const Index c : memory.region_clusters[r]) room += inputs.clusters->nodes[static_cast<std::size_t>(c)].size();
@@ -48,8 +48,8 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
 }
 
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
-    // In the columns by node, the first entries, four for each contact of the step, belong to regions without clusters
-    // and rigid bodies. The entries of the other regions follow.
+    // The columns by node begin with four entries for each contact of the step. These entries belong to regions without
+    // clusters and rigid bodies. The entries of the other regions follow.
     std::size_t end = 4 * regions.contacts.item.size();
     memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();

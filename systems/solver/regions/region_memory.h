@@ -31,7 +31,8 @@ struct RegionTask {
 /// Data of the regions that are solved by all workers together, and the team of workers.
 struct LargeRegions {
     Team team;
-    std::vector<std::unique_ptr<ColouredRegion>> region;  // entry k: k-th large region of the step; never shrinks
+    // Entry k belongs to the k-th large region of the step. The vector never shrinks.
+    std::vector<std::unique_ptr<ColouredRegion>> region;
 };
 
 /// Grows a column to at least `count` rows. Columns never shrink, since shrinking and growing again would clear rows
@@ -41,7 +42,8 @@ void make_room(Column<T>& column, std::size_t count) {
     if (column.size() < count) column.resize(count);
 }
 
-/// Workspace slot for the contact velocities without impulses. Loading writes them; the method may overwrite them.
+/// Workspace slot for the contact velocities without impulses. Loading writes these velocities, and the method may
+/// later overwrite them.
 inline constexpr std::size_t free_velocity_slot = 1;
 
 /// Number of workspace vectors by contact that a method needs. The first one stores the best iterate.
@@ -57,8 +59,8 @@ inline std::size_t workspace_slots(SolverMethod method) {
     }
 }
 
-/// Number of workspace vectors for regions that BodyRegion solves. There the method `automatic` takes Newton steps, and
-/// regions with rows that only sweeps support use `ags` (BodyRegion::method).
+/// Number of workspace vectors for regions that BodyRegion solves. There the method `automatic` takes Newton steps,
+/// which need more vectors. Regions with rows that only sweeps support use `ags` (BodyRegion::method).
 inline std::size_t body_workspace_slots(SolverMethod method) {
     return std::max(workspace_slots(SolverMethod::ags),
                     workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method));
@@ -81,35 +83,38 @@ struct RegionMemory {
     // Data of regions that touch clusters of nodes or rigid bodies. For each region: list of the touched clusters, and
     // list of the touched rigid bodies.
     Ragged<Index> region_clusters, region_rigid;
-    // 1 for each region in which the friction of a contact depends on the direction; empty if no contact has an axis
+    // 1 for each region in which the friction of a contact depends on the direction; empty if no surface has such
+    // friction
     Column<std::uint8_t> region_has_axes;
     Column<std::size_t> node_base;  // by region: index of the first node row of the region
     // For each cluster and for each body: last region in whose list find_region_blocks has put it, so that no list
     // contains it twice.
     Column<Index> region_of_cluster, region_of_rigid;
     Column<RigidPart> rigid_part;  // by contact; empty if no step has needed BodyOperator
-    // Laws of joints, by row of the regions with joints or cables. These rows follow the rows of all contacts, so entry
-    // 0 belongs to row `contact_rows`.
+    // Laws of joints, by row. Only regions with joints or cables have such rows. These rows follow the rows of all
+    // contacts, so entry 0 belongs to row `contact_rows`.
     Column<JointLaw> joint_law;
     Column<CableLaw> cable_law;   // by solved cable
     Column<Real> cable_mobility;  // mobility matrices of all cables (CableBlock::mobility) [1/kg]
-    // storage of the spans of CableLaw from far_mobility on: for each span, one entry per point of all cables
+    // Storage of the spans of CableLaw from far_mobility on. The spans lie one after the other; each has one entry per
+    // point of all cables.
     Column<Real> cable_numbers;
     // For regions with joints or cables: index of the first row of the region. The contacts of the region come first,
     // then the joints, then the points of the cables.
     Column<std::size_t> joint_base;
-    // contact_rows: number of rows of all contacts. rows: contact_rows plus the rows of regions with joints or cables,
-    // whose contacts have rows here as well.
+    // contact_rows: number of rows of all contacts. rows: contact_rows plus the rows of regions with joints or cables.
+    // The contacts of such regions have rows there as well, so that all rows of a region are consecutive.
     std::size_t contact_rows = 0, rows = 0;
     Column<Vec4> free_velocity;  // by row of `velocity`; empty if no step has needed BodyOperator [m/s]
-    // For each row of NodeTable: index that the node received last in the list of its region (NodeList). It is outdated
+    // For each row of NodeTable: index of the node in the list of its region (NodeList), as stored last. It is outdated
     // if the list now holds another node at this index.
     Column<Index> node_index;
     // by region
     Column<Real> cost;        // predicted time of the solve [microseconds]
     Column<Real> cost_parts;  // partial sums of `cost` over the regions
-    // Average numbers of sweeps per region: up to the last step, and for the regions of this step. After the solve,
-    // remember_regions() adds the sweeps of this step to `present` and swaps the two tables.
+    // Average numbers of sweeps per region. `history`: regions of the last step, including its sweeps. `present`:
+    // regions of this step. After the solve, remember_regions() adds the sweeps of this step to `present` and swaps the
+    // two tables.
     RegionHistoryTable history, present;
     // by task
     Column<RegionTask> task;

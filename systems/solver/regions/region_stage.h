@@ -37,9 +37,9 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
 
 SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
 
-/// Tolerance of a region with the contacts `row`. If all its bodies are still: the smaller of
-/// SolverSettings::still_tolerance and `tolerance`; otherwise `tolerance`. With a greater tolerance the solver error
-/// would keep the bodies from coming to rest (docs/methods/errors.md 7).
+/// Tolerance of a region with the contacts `row`. If all its bodies are still, it is the smaller of
+/// SolverSettings::still_tolerance and SolverSettings::tolerance, otherwise the latter. With a greater tolerance the
+/// solver error would keep still bodies from coming to rest (docs/methods/errors.md 7).
 Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
 /// Memory of one region: `count` entries of the columns by contact from index `base` on, and node.size() entries of the
@@ -63,7 +63,8 @@ Real dissipated_by(const RegionStage& stage, Index row);
 /// has neither clusters nor rigid bodies.
 ///
 /// The force on a node times h is the change of momentum of the node minus its contact impulses. For a node of a
-/// cluster the force times h is read from RegionInputs::cluster_kick, because its mass is coupled to other nodes.
+/// cluster this would need the coupled masses of all its nodes, so the force times h is read from
+/// RegionInputs::cluster_kick.
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry

@@ -13,7 +13,7 @@ RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> r
     });
     load_lumped_contacts(stage, region, [&](std::size_t number) {
         // load_contact calls the returned function once for each moving node of the contact, in the order in which
-        // kept.local lists these nodes.
+        // kept.local lists these nodes. So the function needs no search for the node.
         return [next = kept.local[number].data()](Index) mutable { return *next++; };
     });
     return region;

@@ -8,9 +8,9 @@
 namespace skerry {
 
 /// True if the region is solved in its coloured order. Neither this answer nor the results depend on the number of
-/// workers. It is false for regions that touch clusters or need BodyOperator (needs_blocks). It is also false with
-/// fixed iterations: there the iterates of a group of contacts must not depend on the size of the region that contains
-/// it.
+/// workers. It is false for regions that touch clusters or need BodyOperator (needs_blocks). It is also false with a
+/// fixed number of iterations: the iterates of a group of contacts must then be the same in a small region and in a
+/// large one that contains the group.
 bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
 using RegionByColour = LumpedRegion<ByColour>;

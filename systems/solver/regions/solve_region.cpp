@@ -13,8 +13,8 @@ SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& re
     const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
-    // Without convergence solve_ags has already written its best impulses to region.memory, and `rows` holds later,
-    // worse ones.
+    // If solve_ags has not converged, it has already written its best impulses to region.memory. `rows` then holds
+    // later and worse impulses.
     if (result.converged || !std::isfinite(result.error)) rows.keep();
     return result;
 }

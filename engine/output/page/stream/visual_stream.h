@@ -37,7 +37,7 @@ private:
     std::vector<std::vector<VisualMaterial>> materials_;
 };
 
-/// Sets used[n] for each node n of the body that the positions or values of the visual surface depend on.
+/// Sets used[n] for each node n of the body that influences the positions or values of the visual surface.
 void mark_nodes(const BoundVisual& visual, std::vector<bool>& used);
 
 }  // namespace skerry

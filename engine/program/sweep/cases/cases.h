@@ -18,7 +18,7 @@ struct Parameter {
 
 struct Cases {
     std::vector<Parameter> parameters;
-    // Values by case and parameter. A value is empty if a case of a list does not set the parameter.
+    // Values, indexed by case and then by parameter. A value is empty if a case of a list does not set the parameter.
     std::vector<std::vector<std::optional<Json>>> values;
 
     int count() const { return static_cast<int>(values.size()); }
@@ -28,7 +28,7 @@ struct Cases {
 /// million cases, or if two parameters have the same name or set the same place.
 Cases cases_of(const SweepFile& sweep);
 
-/// Returns the assignments PLACE=VALUE of a case in the order of execution, for `skerry run --set`.
+/// Returns the assignments PLACE=VALUE of a case in the order in which they are applied, for `skerry run --set`.
 std::vector<std::string> assignments_of(const SweepFile& sweep, const Cases& cases, int index);
 
 /// Describes the parameter values of a case, for example "mu=0.3, E=1e5".

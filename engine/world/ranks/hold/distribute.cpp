@@ -24,7 +24,7 @@ namespace {
     refuse("distribute", field, found, expected, hint);
 }
 
-/// Refuses worlds that ranks cannot divide.
+/// Throws SceneError for worlds that cannot be divided among ranks.
 void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
     if (settings.integrator == Integrator::leapfrog)
@@ -53,12 +53,12 @@ RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> own_messag
     return std::move(ranks.gather_everywhere(own_message).front());
 }
 
-/// Number of messages in which a rank sends its bodies to another rank. With several messages, only a part of the
-/// bodies is in memory twice at a time.
+/// Number of messages (batches) in which a rank sends its bodies to another rank. With several messages, only a part of
+/// the bodies is in memory twice at a time.
 constexpr Index batches = 8;
 
-/// Message with the rows of the marked bodies of one batch. `pairs_of`: rank that owns the pairs whose contact data the
-/// first batch also contains. `with_records`: true if the message contains the records of the bodies.
+/// Message with the table rows of the marked bodies of one batch. In the first batch it also contains the contact data
+/// of the pairs that the rank `pairs_of` owns. `with_records`: true if it contains the BodyRecord of each body.
 RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> marked, Index batch, int pairs_of,
                              bool with_records) {
     const WholeWorld& whole = world.ranks.whole;
@@ -111,7 +111,8 @@ std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSetti
     return extents;
 }
 
-/// Returns the bytes of a divided world without the bodies that have owners. Kinematic bodies have none and stay.
+/// Returns a divided world as bytes, without the bodies that single ranks own. Kinematic bodies stay, because every
+/// rank has them.
 std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     World world = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(world);
@@ -218,7 +219,7 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     return extents;
 }
 
-/// Returns the complete world on rank 0. `state`: the part of this rank.
+/// Returns the complete world on rank 0, and nothing on other ranks. `state`: the part of this rank.
 std::optional<World> gather_parts(WorldState& state) {
     const RankState& rank_state = state.ranks;
     std::vector<std::uint8_t> sent;
@@ -257,7 +258,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
         refuse_division("world", "a world that is already divided", "an undivided world",
                         "call distribute() only once");
     if (ranks.size() == 1) return require_divisible(undivided);
-    const ArithmeticScope arithmetic;  // same rounding as in advance(), because clusters may be chosen here
+    const ArithmeticScope arithmetic;  // clusters chosen here must round as in advance()
     act_together(&ranks, [&] {
         const std::vector<BodyExtent> extents =
             ranks.rank() == 0 ? send_parts(world, ranks, settings) : receive_part(world, ranks, settings);

@@ -14,12 +14,13 @@ namespace skerry {
 
 namespace {
 
-/// Number of rank searches (update_ghosts) for which a rank keeps a body that it has requested to solve a region.
+/// A rank requests a copy of a body if it must solve a contact region with this body. It keeps the copy during this
+/// number of rank searches (calls of update_ghosts).
 constexpr int searches_of_requests = 8;
-/// Greatest number of steps between two rank searches. Bodies that hardly move thus still get new owners when costs
-/// have changed.
+/// Greatest number of steps between two rank searches. Without this limit, bodies that hardly move would never get new
+/// owners, although costs may change.
 constexpr std::uint64_t steps_between_searches = 1000;
-/// The margin of a body contains the path of this number of steps at its greatest speed and under gravity (margin_of).
+/// The margin of a body (margin_of) contains its path in this number of steps, at its greatest speed and under gravity.
 constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. It is above 1, because the solver visits a contact
 /// in several iterations.
@@ -27,8 +28,9 @@ constexpr Real contact_cost = 10;
 /// Cost of a body apart from its elements and contacts, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
-/// Distance by which a body may move before the ranks that must hold it are found again [m]: about the size of its
-/// surface elements, plus its path in steps_of_margin steps. `speed`: greatest speed of a node [m/s].
+/// Distance by which a body may move before the ranks that must hold it (own it or have a copy) are found again [m]:
+/// about the size of its surface elements, plus its path in steps_of_margin steps. `speed`: greatest speed of a node
+/// [m/s].
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
     const Model& model = world.model;
     Real h = std::max(world.clock.step_before, world.scratch.parameters.h);
@@ -61,8 +63,8 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
             .cost = body_cost + elements + static_cast<Real>(bodies.implicit[body].size()) + contact_cost * contacts,
             .margin = margin,
             .box = {box.lower - more, box.upper + more},
-            // all ranks hold a body with a long step, because the progress of that step is not stored in the rows of
-            // the body
+            // all ranks hold a body that takes long steps (each covers several steps of the world), because the
+            // progress of a long step is not stored in the table rows of the body
             .on_all = model.settings.implicit_step > 0 && bodies.implicit[body].size() > 0};
 }
 
@@ -70,11 +72,12 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
 /// flag.
 struct SearchHeader {
     std::uint64_t extents, requests, stale;
-    // 1: bodies must not get new owners, because a rank stores crossings of an unfinished step
+    // 1: bodies must not get new owners, because this rank stores crossings of surfaces that an earlier attempt at the
+    // present step has found
     std::uint64_t keeps_owners;
 };
 
-/// Facts about the bodies of all ranks.
+/// Data that all ranks exchange in a rank search.
 struct RankSearch {
     std::vector<BodyExtent> extents;  // bodies in the order of their rows in the undivided world
     std::vector<FetchedUnit> requests;
@@ -89,8 +92,8 @@ std::vector<std::uint8_t> owned_bodies(const WorldState& world) {
     return owned;
 }
 
-/// Sorts the entries by unit and rank. Among entries with the same unit and rank, keeps only the one that lasts for the
-/// most rank searches.
+/// Sorts the entries by unit (bodies that joints, ties or similar objects connect) and rank. Among entries with the
+/// same unit and rank, keeps only the one that lasts for the most rank searches.
 void keep_longest(std::vector<FetchedUnit>& fetched) {
     std::ranges::sort(fetched, {}, [](const FetchedUnit& of) { return std::tuple(of.unit, of.rank, -of.searches); });
     const auto is_same = [](const FetchedUnit& a, const FetchedUnit& b) {
@@ -140,7 +143,8 @@ void insert(int rank, std::vector<int>& ranks) {
     if (at == ranks.end() || *at != rank) ranks.insert(at, rank);
 }
 
-/// Change of the owners and holders of all bodies. All ranks compute the same change.
+/// Change of the owners of all bodies, and of their holders (the ranks that own a body or have a copy of it). All ranks
+/// compute the same change.
 class HolderChange {
 public:
     HolderChange(WholeWorld& whole, const RankSearch& found, Column<std::int32_t> owner, int rank_count)
@@ -167,7 +171,7 @@ public:
         return !contains(before_.holders[p], rank) || rank == owner_[world_row] ||
                stale_[static_cast<std::size_t>(before_.unit[world_row])] != 0;
     }
-    /// True if a rank keeps the rows of a body that it held before.
+    /// True if `rank` keeps the rows of a body that it has already: it still holds the body and gets no new rows.
     bool is_kept(Index world_row, int rank) const {
         return before_.owner[world_row] == WholeWorld::everywhere ||
                (contains(holders_[static_cast<std::size_t>(world_row)], rank) && !is_sent(world_row, rank));
@@ -183,8 +187,8 @@ private:
         std::erase_if(whole.fetched, [](const FetchedUnit& fetched) { return fetched.searches <= 0; });
     }
 
-    /// If no owner changes, a rank that receives no rows keeps the ghosts that it no longer needs, because a change of
-    /// its tables costs as much as some steps.
+    /// If no owner changes, a rank that receives no rows keeps the ghosts (copies of bodies of other ranks) that it no
+    /// longer needs, because removing them from its tables costs as much as some steps.
     void keep_ghosts(std::span<const BodyExtent> extents, int rank_count) {
         if (owners_change()) return;
         std::vector<std::uint8_t> receives(static_cast<std::size_t>(rank_count), 0);
@@ -258,7 +262,8 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     note_ghosts(world);
 }
 
-/// Motion of bodies since their holders were last found, and in this attempt; by row of BodyTable.
+/// Motion of bodies since the ranks that must hold them were last found, and in this attempt at a step; by row of
+/// BodyTable.
 struct GhostMotion {
     std::span<const Real> margin, moved;  // RankState [m]
     std::span<const Real> max_speed;      // greatest speed in this attempt [m/s]
@@ -270,10 +275,10 @@ struct GhostMotion {
     }
 };
 
-/// Finds whether a body may leave its box in this step, because its path since the last rank search plus its motion in
-/// this step is not below its margin. The motion is the larger of two values: the reach of the collision search, which
-/// follows from the speed at the start of the step, and the path at the greatest speed in this attempt, after forces
-/// and contacts. Also requests a rank search if the last one was steps_between_searches steps ago.
+/// Finds whether a body may leave the box with which its holders were found: its path since the last rank search, plus
+/// its motion in this step, is not below its margin. The motion is the larger of two values: the reach of the collision
+/// search, which follows from the speed at the start of the step, and the path at the greatest speed in this attempt,
+/// after forces and contacts. Also requests a rank search if the last one was steps_between_searches steps ago.
 void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
                   const RunCounters& run, const std::uint64_t& searched_step, RankFindings& own_findings) {
     const std::span<const Real> reach = search.memory.body_reach;

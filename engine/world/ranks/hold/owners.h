@@ -28,9 +28,10 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
 /// Greatest cost of a rank divided by the mean cost of the ranks. `owner`: by row of the undivided world.
 Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> extents, int rank_count);
 
-/// Returns the ranks that hold each body, ascending, by row of the undivided world. All bodies of a unit have the same
-/// holders: the owner of the unit, and the owners of all bodies whose boxes overlap the box of a body of the unit. If a
-/// body of the unit has `on_all`, all ranks hold the unit. `owner`: by row of the undivided world.
+/// Returns the ranks that hold each body (own it or have a copy), ascending, by row of the undivided world. All bodies
+/// of a unit have the same holders: the owner of the unit, and the owners of all bodies whose boxes overlap the box of
+/// a body of the unit. If a body of the unit has `on_all`, all ranks hold the unit. `owner`: by row of the undivided
+/// world.
 std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
                                            std::span<const BodyExtent> extents, int rank_count);
 

@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// A rank that holds a unit (WholeWorld::unit) because the rank has to solve a region with a body of the unit.
+/// A rank that holds copies of the bodies of a unit (WholeWorld::unit), because it has to solve a contact region with
+/// one of them.
 struct FetchedUnit {
     Index unit;  // WholeWorld::unit
     int rank;
@@ -33,13 +34,14 @@ struct WholeWorld {
     // records of bodies that this rank does not hold: complete on rank 0, only names on all other ranks
     std::vector<BodyRecord> records;
     std::vector<Index> world_row_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
-    // For each row that connects bodies: its row in the undivided world. There is one list for each table, in the order
-    // of Model::for_each_joining, and a last one for attachments. Each list is indexed by handle slot.
+    // For each table row that connects bodies, such as a joint: its row in the undivided world. There is one list for
+    // each table, in the order of Model::for_each_joining, and a last one for attachments. Each list is indexed by
+    // handle slot.
     std::vector<std::vector<Index>> joining_world_row;
     // For each row of the undivided world: ranks that hold the body, ascending.
     std::vector<std::vector<int>> holders;
     std::vector<FetchedUnit> fetched;
-    // number of steps of the run when ranks last searched for bodies that they must hold
+    // number of steps of the run at the last rank search, which finds the bodies that each rank must hold
     std::uint64_t searched_step = 0;
     RankSettings settings;
 

@@ -17,8 +17,8 @@ struct MailedNode {
     Vec3 velocity = Vec3::Zero(), push = Vec3::Zero();  // NodeTable: velocity_next, push_out [m/s]
 };
 
-/// Contact impulse and moment, push-out velocity and push-out spin of the frame of a rigid or implicit body
-/// (RigidBodyTable). A record with body == no_index ends a list.
+/// Contact impulse and moment of the frame of a rigid or implicit body, and its push-out velocity and spin, which
+/// reduce overlaps (RigidBodyTable). A record with body == no_index ends a list.
 struct MailedBody {
     Index body = no_index;  // row of the body in the undivided world
     Index deforming = 0;    // number of records MailedDeformation that follow
@@ -135,14 +135,14 @@ public:
 private:
     bool is_solved_here(Index body) const { return regions_.elsewhere.empty() || !regions_.elsewhere[body]; }
 
-    /// Sets the impulses of hold rows that are in no region of this rank to zero. Another rank solves them; here they
-    /// still contain the impulses with which a solver starts.
+    /// Sets the impulses of hold rows (contact rows that hold nodes along single directions) to zero if they are in no
+    /// region of this rank. Another rank solves them. Here they still contain the initial impulses of a solver.
     void zero_left_out_rows() {
         for (std::size_t row = regions_.contact_count + rows_.tie_count; row < rows_.region.size(); ++row)
             if (rows_.region[row] == no_index) out_.impulse[row].setZero();
     }
 
-    /// Lists the nodes and bodies that the regions of this rank have moved, if other ranks hold them.
+    /// Lists the nodes and bodies that this rank has moved by solving its contact regions, if other ranks hold them.
     void list_moved() {
         regions_.nodes.clear();
         regions_.bodies.clear();
@@ -188,9 +188,9 @@ private:
         return no_index;
     }
 
-    /// Calls visit(unit, number) for the results of all rows of joints, ties and cables of the units for which
-    /// wants(unit) is true. `unit`: first body of the unit. All ranks that hold a unit have its rows in the same order,
-    /// so messages need not name the rows.
+    /// Calls visit(unit, number) for each result of the joints, ties and cables in the units (sets of connected bodies)
+    /// for which wants(unit) is true. `unit`: first body of the unit. All ranks that hold a unit have its rows in the
+    /// same order, so messages need not name the rows.
     void for_each_result_of_units(auto&& wants, auto&& visit) {
         if (regions_.unit.empty()) return;
         const auto wanted_unit = [&](Index body) {
@@ -217,9 +217,9 @@ private:
         }
     }
 
-    /// Writes the messages. Each has RegionTable::pushed, the impulses of the contacts that the peer has sent, and then
-    /// lists of nodes, bodies, hold rows and units. An empty record ends each list. The results of the joints, ties and
-    /// cables of these units come last.
+    /// Writes one message for each peer. It has RegionTable::pushed, the impulses of the contacts that the peer has
+    /// sent, and then lists of nodes, bodies, hold rows and units. An empty record ends each list. The results of the
+    /// joints, ties and cables of these units come last.
     void send() {
         const std::size_t peers = bodies_.peers.size();
         RankMail& mail = regions_.mail;

@@ -1,4 +1,5 @@
-// Exchange of contacts before the solve: the rank that solves a region gets all contacts of the region.
+// Exchange of contacts before the solve. One rank solves a contact region (contacts that are connected through moving
+// nodes or bodies). The other ranks send it the contacts of the region that they have found.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -38,8 +39,9 @@ public:
     }
 
 private:
-    /// Index in `peers` of the rank that solves the region of a group of nodes. -1: this rank. Below -1: a rank that is
-    /// no peer (no_peer). `group`: first node of the group.
+    /// Returns which rank solves the contact region of a group of nodes (nodes that move together): its index in
+    /// `peers`, -1 for this rank, or a number below -1 for a rank that shares no body with this rank (no_peer).
+    /// `group`: first node of the group.
     int solver_of(Index group) {
         const Index root = regions_.sets.root(group);
         const int owner = regions_.label[root].owner;
@@ -59,8 +61,9 @@ private:
         return false;
     }
 
-    /// Tells each peer for which units of this rank the peer must solve the joints, ties and cables. Units of other
-    /// ranks count as solved elsewhere until a message of their owner assigns them to this rank.
+    /// Tells each peer for which units of this rank (sets of bodies that joints, ties or cables connect) the peer must
+    /// solve the joints, ties and cables. Units of other ranks count as solved elsewhere until a message of their owner
+    /// assigns them to this rank.
     void send_units() {
         regions_.elsewhere.assign(regions_.unit.size(), 1);
         regions_.unit_count.assign(bodies_.peers.size(), 0);
@@ -82,7 +85,8 @@ private:
                 visit(static_cast<Index>(b), solver_of(bodies_.nodes[b].begin));
     }
 
-    /// Copies `elsewhere` of the first body of each unit to the other bodies of the unit.
+    /// Copies RankRegions::elsewhere (1: another rank solves the joints, ties and cables) of the first body of each
+    /// unit to the other bodies of the unit.
     void spread_over_units() {
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
             regions_.elsewhere[b] = regions_.unit[b] != no_index && regions_.elsewhere[regions_.unit[b]];
@@ -151,7 +155,7 @@ private:
     }
 
     /// Moves the contacts that this rank has found to RankRegions::found, and fills the contact table with the contacts
-    /// that this rank solves, in key order.
+    /// that this rank solves, sorted by key.
     void merge() {
         std::swap(contacts_, regions_.found);
         const ContactTable& found = regions_.found;

@@ -20,8 +20,8 @@ void put_rows(std::span<const T> rows, RankMessage& message) {
     message.insert(message.end(), bytes.begin(), bytes.end());
 }
 
-/// Messages to and from all peers. Their memory is reused, so that messages no longer than earlier ones need no
-/// allocation.
+/// Messages to and from all peers (ranks that hold a body of this rank). Their memory is reused, so that messages no
+/// longer than earlier ones need no allocation.
 struct RankMail {
     std::vector<RankMessage> out, in;  // by index in RankState::peers
 
@@ -65,7 +65,8 @@ private:
     std::span<const std::byte> rest_;
 };
 
-/// Collective. Calls visit(row) for the rows of all ranks, in the order of the ranks.
+/// Gathers rows from all ranks, and calls visit(row) for each, in the order of the ranks. Collective: all ranks must
+/// call it.
 template <class T>
 void for_each_gathered(Ranks& ranks, std::span<const T> own_rows, auto&& visit) {
     for (const RankMessage& message : ranks.gather_everywhere(std::as_bytes(own_rows)))

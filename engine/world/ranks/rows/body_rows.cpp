@@ -81,8 +81,8 @@ void move_tables(Model& from, Model& to) {
     to.watch.first_piece.clear();
 }
 
-/// Finds bodies whose old rows are replaced by added rows, and maps their old rows to the new ones. Data that refer to
-/// these bodies then remain valid. Returns marks of these bodies, by new row.
+/// Finds bodies whose old rows are replaced by added rows, and maps their old rows to the new ones, so that data that
+/// refer to these bodies remain valid. Returns a mark for each new row: 1 for such a body.
 std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> rows_before,
                                          std::span<const Index> world_row_before, const Model& now,
                                          std::span<const Index> world_row_now, RowMoves& moves) {
@@ -102,8 +102,8 @@ std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> ro
     return exchanged;
 }
 
-/// Makes the next step search the candidates of all pairs of marked bodies again, because valid_until refers to
-/// BodyTable::travel, which another rank has measured for these bodies.
+/// Makes the next step search the candidates of all pairs of marked bodies again. The list of candidates is valid until
+/// the bodies have travelled a given distance, but another rank has measured BodyTable::travel of the marked bodies.
 void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p)
         if (marked[static_cast<std::size_t>(pairs.first[p])] ||

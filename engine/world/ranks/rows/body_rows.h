@@ -34,7 +34,7 @@ struct BodyRows {
     Column<Real> valid_until;     // SearchState::body_valid_until
     WarmStartTable warm_start;
     RestingContactTable resting;
-    PairTable pairs;        // overlapping pairs, without candidates
+    PairTable pairs;        // pairs whose surfaces intersect, without candidates
     ContactTable contacts;  // contacts of the last step
     Column<FoundSelfCrossing> self_crossings;
     Column<std::uint64_t> enabled_pairs;  // RankState
@@ -42,7 +42,8 @@ struct BodyRows {
     std::vector<BodyRecord> records;
 };
 
-/// Returns true for pairs whose contact data are copied with rows of bodies. `pair`: ContactKey::pair.
+/// Returns true for pairs whose contact data are copied with the rows of bodies, or kept (replace_rows). `pair`:
+/// ContactKey::pair.
 using WantsPair = std::function<bool(std::uint64_t pair)>;
 
 /// Returns copies of the rows of marked bodies. The world must have no pending changes (WorldState::settle). The marked

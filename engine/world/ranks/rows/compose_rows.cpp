@@ -188,8 +188,8 @@ private:
         }
     }
 
-    /// Appends the progress of the checks of stable steps. All ranks have done the checks up to the same piece, so they
-    /// go on at the first new row whose source has not checked it.
+    /// Appends the progress of the stable-step checks, which visit the bodies one after the other. All ranks have come
+    /// equally far, so the checks go on at the first new row whose source has not checked it.
     void append_watch() {
         StepWatch& watch = to_.watch;
         for (const Pick& pick : picks_) {

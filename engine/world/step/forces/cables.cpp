@@ -1,5 +1,5 @@
-// Force element of cables: lists the cables that act in the step, and adds the forces of frictionless cables with a
-// prescribed tension. All other cables become constraint rows (laws/cable_law.cpp, docs/methods/cables.md).
+// Force element of cables. It lists the cables that act in the step, and adds the forces of frictionless cables with a
+// prescribed tension. All other cables become rows of the contact problem (laws/cable_law.cpp, docs/methods/cables.md).
 #include "engine/world/step/seams.h"
 #include "systems/forces/prepare_cables.h"
 

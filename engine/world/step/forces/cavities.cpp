@@ -1,5 +1,5 @@
-// Force element for pressure on faces and in cavities, and its contribution to the stable step
-// (docs/methods/cavities.md 3).
+// Force element for prescribed pressure on faces and for the pressure of fillings of cavities, and its contribution to
+// the stable step (docs/methods/cavities.md 3).
 #include "systems/forces/cavities.h"
 
 #include <Eigen/Dense>
@@ -23,9 +23,10 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
             value(w.clock.time), value(p.lag), value(p.kick_time), outputs<CavityOutputs>(c, w.model.nodes), if_any);
 }
 
-/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]: the bound
-/// for the filling plus, except for implicit bodies, the bound for the rotation of faces. `p`: largest pressure [Pa].
-/// `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
+/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]. It is the
+/// sum of a bound for the filling, whose pressure depends on the volume, and a bound for pressure forces that follow
+/// the faces as these rotate. Implicit bodies get only the first. `p`: largest pressure [Pa]. `stiffness`: decrease of
+/// pressure per increase of volume [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
@@ -53,8 +54,8 @@ Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Re
 }
 
 /// Upper bound by which the filling of one cavity raises the squared circular frequencies of a rigid body [1/s^2]:
-/// stiffness (|A|^2/m + L.I^-1 L), with the sum A of the area vectors of the faces and its moment L about the centre of
-/// mass.
+/// stiffness (|A|^2/m + L.I^-1 L). A is the sum of the area vectors of the faces, L the sum of their moments about the
+/// centre of mass, m the mass and I the inertia of the body.
 Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t c, Real stiffness) {
     const auto body = static_cast<std::size_t>(cavities.body[c]);
     if (model.is_held(body)) return 0;
@@ -72,9 +73,9 @@ Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t
            (area.squaredNorm() / rigid.mass[r] + about_axes.cwiseAbs2().cwiseQuotient(rigid.moments[r]).sum());
 }
 
-/// Factor on the stiffness of a filling in the bound of the stable step. The pressure of a liquid has a kink where the
-/// liquid boils. Oscillations across the kink gain energy at the stable step of the linear law, and still at half of
-/// it, but not at a third. The bound adds squared frequencies, so the factor is 3^2.
+/// Safety factor on the stiffness of a filling, for the stable step. The pressure of a liquid has a kink where the
+/// liquid boils. Oscillations across the kink gain energy at the stable step of the linear law, and also at half of it,
+/// but not at a third. A step three times shorter corresponds to a stiffness 3^2 times larger.
 Real margin_of(CavityLaw law) {
     return law == CavityLaw::liquid ? 9 : 1;
 }

@@ -1,4 +1,5 @@
-// Force element for loads and force fields.
+// Force element for loads and force fields (LoadTable). nodal_loads.cpp adds the loads of single nodes
+// (NodeTable::load).
 #include <algorithm>
 
 #include "engine/world/step/seams.h"

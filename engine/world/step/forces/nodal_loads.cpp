@@ -1,5 +1,5 @@
-// Force element for loads on nodes. It must be the first force element in the list: its stage sets applied_force, and
-// the stages of other force elements add to applied_force.
+// Force element for loads on single nodes (NodeTable::load). It must be the first entry of the list force_elements: its
+// stage overwrites NodeTable::applied_force, and the stages of all other force elements add to this column.
 #include "systems/forces/add_nodal_loads.h"
 
 #include "engine/world/step/seams.h"

@@ -1,5 +1,6 @@
 // Constraint law of cables with a prescribed length, or with friction at the points over which they run
-// (docs/methods/cables.md). The stage forces/prepare_cables lists the rows of these cables (forces/cables.cpp).
+// (docs/methods/cables.md). The rows of these cables are prepared by the stage forces/prepare_cables
+// (forces/cables.cpp), so this law has no `find`.
 #include "engine/world/step/seams.h"
 #include "systems/forces/prepare_cables.h"
 

@@ -1,4 +1,5 @@
-// Constraint law of joints between rigid bodies: equations, limits and motors (docs/methods/joints.md).
+// Constraint law of joints between rigid bodies. Its rows are the equations, limits and motors of joints
+// (docs/methods/joints.md).
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/joints/prepare_joints.h"

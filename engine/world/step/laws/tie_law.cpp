@@ -1,5 +1,5 @@
-// Constraint law of ties: nodes of deformable bodies that are fixed to other objects (docs/methods/ties.md). The rows
-// of ties follow the contacts in the contact table while regions are solved.
+// Constraint law of ties: nodes of deformable bodies that are fixed to other objects (docs/methods/ties.md). While
+// contact regions are solved, the contact table contains the rows of ties after the contacts.
 #include "engine/world/step/seams.h"
 
 namespace skerry {

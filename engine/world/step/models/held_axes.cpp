@@ -1,5 +1,5 @@
-// Motion model and constraint law of nodes that attachments hold along single directions. The rows of the law are the
-// last ones in the contact table while regions are solved.
+// Motion model and constraint law of nodes that attachments hold along single directions, like rollers. While contact
+// regions are solved, the rows of the law are the last ones in the contact table.
 #include <algorithm>
 
 #include "engine/world/step/seams.h"

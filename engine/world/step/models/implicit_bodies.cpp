@@ -1,4 +1,5 @@
-// Motion model of the deformation of implicit bodies relative to their frames (docs/methods/implicit_bodies.md).
+// Motion model of the deformation of implicit bodies. The deformation is relative to a frame that moves like a rigid
+// body (docs/methods/implicit_bodies.md).
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 
@@ -29,7 +30,8 @@ void list_coupling(WorldState& w, TaskGraph& g) {
             implicit_times(w.scratch.parameters), make(m.stiff_bodies), make(w.scratch.coupling));
 }
 
-/// Lists the stage in which implicit bodies deform and exert forces on their supports.
+/// Lists the stage that computes the deformation of implicit bodies at the end of the step, and the forces on their
+/// held nodes.
 void list_strain(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;

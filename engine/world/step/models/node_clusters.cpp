@@ -1,5 +1,5 @@
-// Motion model of clusters. A cluster consists of the moving nodes of connected elements that explicit integration
-// would make unstable at the step length. An implicit method integrates the nodes of a cluster together
+// Motion model of clusters. A cluster consists of the moving nodes of connected elements that would be unstable with
+// explicit integration at the chosen step length. An implicit method integrates these nodes together
 // (docs/methods/clusters.md).
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
