@@ -121,6 +121,15 @@ struct RigidSpins {
     Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
     /// Spin after the kick of this step (moments of gravity and loads), before the contacts act [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
+    /// Acceleration, due to the rotation of the body after the kick, of a point that is fixed to the body [m/s^2].
+    /// `arm`: vector from the centre of mass to the point [m]. `held`: an attachment prescribes the motion of the body,
+    /// so its spin is constant in this step. The spin of any other body changes because its angular momentum is
+    /// constant.
+    Vec3 acceleration(std::size_t r, const Vec3& arm, bool held) const {
+        const Vec3 spin = kicked(r), centripetal = spin.cross(spin.cross(arm));
+        if (held) return centripetal;
+        return centripetal + (inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]).cross(spin)).cross(arm);
+    }
 };
 
 /// The cables that the region solver solves, with their columns by point (CableBlockTable).

@@ -14,17 +14,19 @@ namespace skerry::test::transaction_test {
 
 namespace {
 
-/// A ball on a plane and a held ball. One of them gets a load that overflows.
+/// A ball on a plane, and a ball that an attachment moves and rotates. The first gets a load that overflows.
 struct Doomed {
     World world;
     BodyHandle ball, held;
 
-    explicit Doomed(Integrator integrator) : world({.integrator = integrator}) {
+    explicit Doomed(Integrator integrator, BodyDynamics held_dynamics) : world({.integrator = integrator}) {
         const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5});
         world.add_collider(Plane{});
         ball = world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {0, 0, 0.06}});
-        held = world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {1, 0, 0.5}});
-        world.attach(held, std::vector<Index>{0, 1, 2}, {.velocity = {0.1, 0, 0}}, {1, 0, 0.5});
+        held = world.add_body(mesh::ball(0.05, 4),
+                              {.material = rubber, .position = {1, 0, 0.5}, .dynamics = held_dynamics});
+        world.attach(held, std::vector<Index>{0, 1, 2}, {.velocity = {0.1, 0, 0}, .angular_velocity = {0, 0, 1}},
+                     {1, 0, 0.5});
     }
     void overload() { world.set_loads(ball, std::vector<Vec3>(world.positions(ball).size(), Vec3(1e308, 1e308, 0))); }
 };
@@ -82,8 +84,10 @@ TEST_CASE("a try as long as the one before it has the same forces without a pass
 }
 
 TEST_CASE("a refused step leaves every column of state as it was", "[scene]") {
-    for (const Integrator integrator : {Integrator::leapfrog, Integrator::symplectic_euler}) {
-        Doomed scene(integrator);
+    const auto integrator = GENERATE(Integrator::leapfrog, Integrator::symplectic_euler);
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
+        CAPTURE(integrator, dynamics);
+        Doomed scene(integrator, dynamics);
         REQUIRE(scene.world.advance(0.2).ok());
         REQUIRE(scene.world.contacts().size() > 0);
         scene.overload();
@@ -171,7 +175,7 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
 }
 
 TEST_CASE("before a step is known to be good, it writes only data that the transaction restores", "[scene]") {
-    Doomed scene(Integrator::leapfrog);
+    Doomed scene(Integrator::leapfrog, BodyDynamics::explicit_elastic);
     WorldState& state = WorldAccess::state_of(scene.world);
     const auto lies_in = [](const void* address, const Access& access) {
         const auto at = reinterpret_cast<std::uintptr_t>(address);

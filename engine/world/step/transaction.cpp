@@ -408,6 +408,7 @@ void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     moments_ = model.rigid_bodies.moments;
     axes_ = model.rigid_bodies.axes;
     displacement_ = model.implicit_nodes.displacement;
+    displacement_velocity_ = model.implicit_nodes.velocity;
     keep_stiffness(model);
 }
 
@@ -420,6 +421,7 @@ void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
     model.rigid_bodies.moments = moments_;
     model.rigid_bodies.axes = axes_;
     model.implicit_nodes.displacement = displacement_;
+    model.implicit_nodes.velocity = displacement_velocity_;
     clock.time = time_;
     clock.offset = 0;
     restore_stiffness(model);

@@ -79,7 +79,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
 ///     nodes.position, nodes.velocity, time,
 ///     implicit_nodes.displacement,
 ///     rigid_bodies.center, rotation, moments
-///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
+///     and axes, implicit_nodes.displacement
+///     and velocity                              drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they depend on the shapes at the start
 ///                                                                      of the attempt, which do not change. Two
@@ -119,9 +120,10 @@ private:
     Column<Vec3> center_;                   // centres of rigid bodies [m]
     Column<Vec3> moments_;                  // principal moments of inertia of rigid bodies [kg m^2]
     Column<Mat3> rotation_, axes_;          // rotations and principal axes of rigid bodies
-    Column<Vec3> displacement_;             // displacements of nodes of implicit bodies [m]
-    Column<ElementLane> modulus_;           // elements.implicit_modulus [Pa]
-    Column<Real> inverse_;                  // clusters.inverse [1/kg]
+    // Displacements and deformation velocities of nodes of implicit bodies [m, m/s]
+    Column<Vec3> displacement_, displacement_velocity_;
+    Column<ElementLane> modulus_;  // elements.implicit_modulus [Pa]
+    Column<Real> inverse_;         // clusters.inverse [1/kg]
 };
 
 }  // namespace skerry

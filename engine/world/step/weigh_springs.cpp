@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/world/step/seams.h"
+
 namespace skerry {
 
 SpringInputs springs_of(const Model& model) {
@@ -67,10 +69,11 @@ void add_spring_rates(Model& model, std::span<Real> of_body) {
         const Real first = model.springs.first_mass[s].inverse + inverse_mass_of_frame(model, springs.first, s),
                    second = model.springs.second_mass[s].inverse + inverse_mass_of_frame(model, springs.second, s);
         const Real joined = std::sqrt(first * second);
+        const Real stiffness = (springs.side[s] == SpringSide::both ? 1 : kink_factor) * springs.stiffness[s];
         if (springs.first.body[s] != no_index)
-            of_body[static_cast<std::size_t>(springs.first.body[s])] += springs.stiffness[s] * (first + joined);
+            of_body[static_cast<std::size_t>(springs.first.body[s])] += stiffness * (first + joined);
         if (springs.second.body[s] != no_index)
-            of_body[static_cast<std::size_t>(springs.second.body[s])] += springs.stiffness[s] * (second + joined);
+            of_body[static_cast<std::size_t>(springs.second.body[s])] += stiffness * (second + joined);
     }
 }
 

@@ -23,6 +23,12 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 /// friction that depends on the direction, because such friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
+/// Half of the tangential velocity change at the contact that the rotation of rigid and implicit bodies causes within
+/// the step [m/s]. A node of a rotating body moves along an arc. The friction law uses the mean velocity along the arc,
+/// so a sticking contact stays at the same point of both surfaces. Zero for ties, which have this term in their
+/// prescribed velocity, and if there is no friction.
+Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real h);
+
 /// Loads contact `row`. `local(node)` returns the velocity row of a moving node in the region. `velocity_next` holds
 /// the predicted node velocities. A node moves with a rigid body if `on_rigid_body(node, weight)` returns true; such a
 /// node is omitted from the LumpedContact.
@@ -61,7 +67,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};
-    offset -= midpoint_slip(inputs, row, velocity_next);
+    offset += arc_slip(inputs, row, velocity_next, h) - midpoint_slip(inputs, row, velocity_next);
     contact.offset = padded(offset);
     return contact;
 }

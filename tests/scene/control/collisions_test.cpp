@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "skerry/joint.h"
 #include "skerry/scene.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"

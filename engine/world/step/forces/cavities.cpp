@@ -73,13 +73,6 @@ Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t
            (area.squaredNorm() / rigid.mass[r] + about_axes.cwiseAbs2().cwiseQuotient(rigid.moments[r]).sum());
 }
 
-/// Safety factor on the stiffness of a filling, for the stable step. The pressure of a liquid has a kink where the
-/// liquid boils. Oscillations across the kink gain energy at the stable step of the linear law, and also at half of it,
-/// but not at a third. A step three times shorter corresponds to a stiffness 3^2 times larger.
-Real margin_of(CavityLaw law) {
-    return law == CavityLaw::liquid ? 9 : 1;
-}
-
 void add_cavity_rate(Model& model, std::span<Real> of_body) {
     const CavityTable& table = model.cavities;
     const CavityInputs cavities = CavityInputs::bind({}, table, model.bodies, model.nodes);
@@ -89,9 +82,9 @@ void add_cavity_rate(Model& model, std::span<Real> of_body) {
         Real p = std::abs(table.pressure_now[c]);
         if (law == CavityLaw::pressure)
             for (const TimeKey& key : cavities.keys_of(c)) p = std::max(p, std::abs(key.value));
-        const Real stiffness = law == CavityLaw::pressure
-                                   ? 0
-                                   : margin_of(law) * filling_stiffness(law, cavities.fluid[c], p, cavities.volume(c));
+        const Real factor = law == CavityLaw::pressure ? 0 : law == CavityLaw::liquid ? kink_factor : 1;
+        const Real stiffness =
+            factor > 0 ? factor * filling_stiffness(law, cavities.fluid[c], p, cavities.volume(c)) : 0;
         const Real rate = model.is_rigid(body) ? rate_of_rigid(model, cavities, c, stiffness)
                                                : rate_of_nodes(model, cavities, c, p, stiffness, model.has_frame(body));
         of_body[body] += rate;
