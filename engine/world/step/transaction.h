@@ -77,10 +77,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
 ///     bodies.max_speed, bodies.frame_speed      check_state            a copy from the start of the attempt
 ///     nodes.velocity_next of sleeping bodies    solve_regions          zero, its value as long as they sleep
 ///     nodes.position, nodes.velocity, time,
-///     implicit_nodes.displacement,
+///     implicit_nodes.displacement and velocity,
 ///     rigid_bodies.center, rotation, moments
-///     and axes, implicit_nodes.displacement
-///     and velocity                              drift_to (leapfrog)    a copy from the start of the call
+///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they depend on the shapes at the start
 ///                                                                      of the attempt, which do not change. Two
