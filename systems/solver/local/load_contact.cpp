@@ -90,4 +90,9 @@ Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> veloc
     return slip - slip.dot(inputs.normal[row]) * inputs.normal[row];
 }
 
+Vec3 contact_offset(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real bias, Real h) {
+    return bias * inputs.normal[row] - inputs.surface_velocity[row] + arc_slip(inputs, row, velocity_next, h) -
+           midpoint_slip(inputs, row, velocity_next);
+}
+
 }  // namespace skerry

@@ -29,6 +29,10 @@ Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> 
 /// prescribed velocity, and if there is no friction.
 Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real h);
 
+/// Velocity that the contact velocity contains beside the velocities of the nodes: the bias along the normal, minus the
+/// surface velocity, plus arc_slip, minus midpoint_slip [m/s]. `bias`: contact_bias.
+Vec3 contact_offset(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real bias, Real h);
+
 /// Loads contact `row`. `local(node)` returns the velocity row of a moving node in the region. `velocity_next` holds
 /// the predicted node velocities. A node moves with a rigid body if `on_rigid_body(node, weight)` returns true; such a
 /// node is omitted from the LumpedContact.
@@ -39,7 +43,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     LumpedContact contact;
     contact.normal = padded(inputs.normal[row]);
     contact.bias = contact_bias(inputs, row, velocity_next, settings, h);
-    Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
+    Vec3 offset = contact_offset(inputs, row, velocity_next, contact.bias, h);
     contact.node_count = 0;
     contact.diagonal = 0;
     Real lightest = 0;  // greatest inverse mass of the moving nodes [1/kg]
@@ -67,7 +71,6 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};
-    offset += arc_slip(inputs, row, velocity_next, h) - midpoint_slip(inputs, row, velocity_next);
     contact.offset = padded(offset);
     return contact;
 }
