@@ -29,9 +29,9 @@ struct ForceElement {
     // positions.
     void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
-    // For each body, finds an upper bound of the rate at which the dampers of this force element slow its nodes [1/s].
-    // In a step of length h they reduce no velocity below exp(-rate h) times its value. An entry of `of_body` that is
-    // below this rate is raised to it. The rate limits the stable step.
+    // For each body, finds a rate: in a step of length h, the dampers of this force element reduce no node velocity of
+    // the body below exp(-rate h) times its value [1/s]. An entry of `of_body` that is below this rate is raised to it.
+    // The rate limits the stable step.
     void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
     // For each body, adds the rate c of drag forces -c m v on its nodes with the mass m and the velocity v [1/s]. These
     // forces limit the stable step too, because they are computed with the velocities at the start of the step.
@@ -41,7 +41,7 @@ struct ForceElement {
     // Returns true if the forces change with time in the step of length `h` [s] that starts at time `t` [s], even if no
     // body moves.
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
-    // measures work and losses, so that the balance does not count them as external work
+    // measures the work and the losses of these forces, which the balance subtracts from the external work
     ListStages measure = nullptr;
     ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
     // Stored energy at the time `t` [s], with a correction if velocities are `lag` seconds older than positions [J].
@@ -49,10 +49,11 @@ struct ForceElement {
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 
-/// Factor on the stiffness of a force whose law has a kink, in its contribution to ForceElement::add_rate. Kinks are
-/// the rest length of a one-sided spring and the pressure at which a liquid boils. A motion across a kink can gain
-/// energy at each crossing: at the stable step of the linear law on average 3.4 times its energy, at a third of it 0.4
-/// %. The contribution is a squared frequency, so the factor is 3^2.
+/// Factor on the stiffness of a force whose law has a kink (a jump of the stiffness), in its contribution to
+/// ForceElement::add_rate. Examples are the rest length of a one-sided spring and the pressure at which a liquid boils.
+/// A motion can gain energy whenever it crosses a kink. With the stable step of the linear law, the mean gain is 3.4
+/// times the energy of the motion; with a third of this step it is only 0.4 %. Therefore the stable step is divided by
+/// 3. The contribution is a squared frequency, so the factor is 3^2.
 inline constexpr Real kink_factor = 9;
 
 /// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
