@@ -54,8 +54,9 @@ private:
     const AccessWatch* before_;
 };
 
-/// Member of Column. It reports each copy and each move of the enclosing column to the AccessWatch of the thread, as an
-/// access to the column. A forbidden move terminates the program with a message, because a move must not throw.
+/// Member of Column. When a column is copied or moved, this member is, too. It then reports an access to the column to
+/// the AccessWatch of the thread. AccessWatch::touched() throws if the access is not allowed. A copy passes this
+/// exception on. A move is noexcept, so the exception terminates the program with a message.
 class CopyCheck {
 public:
     CopyCheck() = default;

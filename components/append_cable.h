@@ -5,9 +5,9 @@
 
 namespace skerry {
 
-/// Appends a point to the columns with one row per point. The columns other than `stencil` and `velocity` get values
-/// without effect (1 for most_ratio, which means no friction; else 0). The caller may overwrite them. `velocity`: see
-/// CableBlockTable::velocity [m/s]
+/// Appends one row to each column with one row per point. `stencil` and `velocity` get the arguments
+/// (CableBlockTable::velocity [m/s]). The other columns get values without effect, which the caller may overwrite: 1
+/// for most_ratio, which means no friction; else 0.
 inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBlockTable& blocks) {
     blocks.stencil.push_back(stencil);
     blocks.velocity.push_back(velocity);

@@ -29,9 +29,10 @@ enum class GhostKind : std::uint8_t {
     led,   // this rank computes no forces of the ghost, and receives its predicted velocities from the owner
 };
 
-/// A frame that translates with a body but does not rotate. Distances inside a body change only if nodes move relative
-/// to the frame. The distance between two bodies also changes by the relative motion of their two frames. The collision
-/// search bounds these motions separately (docs/methods/collision.md 2).
+/// A frame that translates with a body but does not rotate. Distances inside a body change only if its nodes move
+/// relative to the frame. The distance between two bodies also changes if one frame moves relative to the other. The
+/// collision search bounds these two kinds of motion separately. The motion of the frame then does not use up the
+/// margins of the search for contacts of a body with itself (docs/methods/collision.md 2).
 struct MovingFrame {
     Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when BodyTable::displacement was last zero [m/s]
     Vec3 offset = Vec3::Zero();    // displacement of the frame since BodyTable::displacement was last zero [m]
@@ -68,10 +69,10 @@ struct BodyTable {
     // thickness of the layer around the surface in which contacts act; two bodies in contact use the mean of their
     // thicknesses [m]
     Column<Real> contact_distance;
-    // Number of core nodes of a round rigid body. The core nodes are the first nodes of the body. A body with 0 core
-    // nodes is not round and has triangles. A sphere has 1 core node, its centre. A capsule has 2 core nodes, the ends
-    // of its axis. The surface of a sphere or capsule is at the distance round_radius [m] from the core. A cylinder has
-    // 3 core nodes, which define its surface: its centre, the centre of one end, and a point on the rim of that end.
+    // Number of core nodes, which define the surface of a round rigid body. They are the first nodes of the body. 0:
+    // the body is not round, and its triangles define the surface. Sphere: 1 core node, its centre. Capsule: 2 core
+    // nodes, the ends of its axis. The surface of a sphere or capsule is at the distance round_radius [m] from the
+    // centre or axis. Cylinder: 3 core nodes, its centre, the centre of one end, and a point on the rim of that end.
     // For a cylinder round_radius is the radius of the bounding ball [m].
     Column<Index> core_nodes;
     Column<Real> round_radius;
@@ -79,8 +80,9 @@ struct BodyTable {
     Column<Real> min_altitude;  // smallest altitude of the elements in the rest shape [m]
     Column<Real> rest_step;     // longest stable step of the body in its rest shape [s]
     Column<Real> stable_step;   // longest stable step of the body in its shape at the last check [s]
-    // Step length for which the clusters of the body were made (NodeClusters). The implicit elements of the clusters
-    // are stable up to this step, unless they become stiffer than assumed. 0: the body has no clusters [s].
+    // Step length for which the clusters of the body were made. A cluster is a group of nodes around elements that are
+    // integrated implicitly (NodeClusters). These elements are stable up to this step, unless they become stiffer than
+    // assumed. 0: the body has no clusters [s].
     Column<Real> cluster_step;
     // 1: the body is asleep. Steps do not compute a sleeping body until it is woken, for example by a contact or a
     // changed load.
@@ -88,33 +90,34 @@ struct BodyTable {
     Column<GhostKind> ghost;  // derived by note_ghosts; empty in a world that is not divided among ranks
     // 1: the body is asleep or a led ghost, so this step computes no forces on it. Derived by Model::note_rest.
     Column<std::uint8_t> idle;
-    // Number of steps for which the body still counts as undeformed and unrotated, so that its elements exert no force
-    // and are not computed. After these steps the body is tested again (find_unstrained.h). 0: the elements are
-    // computed.
+    // Number of further steps in which the elements of the body are not computed, because the body counts as undeformed
+    // and unrotated, so that its elements exert no force. After these steps the body is tested again
+    // (find_unstrained.h). 0: the elements are computed.
     Column<std::uint16_t> unstrained;
     // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
     // Measurements of stillness (stillness.h), used if SleepSettings::own_limits is set. The sleep time, for which a
-    // body must be still before it falls asleep, is divided into two halves. |drift| is the largest distance, measured
-    // in the current half, of a node from its position at the start of the half (NodeTable::still_position) [m].
-    // `drift` is negative if the distance has decreased between two measurements; the body then does not move steadily.
-    // `drift_before` is |drift| at the end of the previous half [m].
+    // body must be still before it falls asleep, is divided into two halves. |drift|: largest distance, measured in the
+    // current half, of a node from its position at the start of the half (NodeTable::still_position) [m]. The sign of
+    // `drift` is a flag. It is negative if a measurement was below an earlier one: the body then does not move steadily
+    // in one direction. `drift_before`: |drift| at the end of the previous half [m].
     Column<Real> drift, drift_before;
     // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
-    // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: shape_drift at the end
-    // of the previous half if the last measurement of that half gave the largest distance; else 0 [m]. It is above 0
-    // for a shape that creeps in one direction.
+    // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before` serves to detect a shape
+    // that creeps in one direction. It is shape_drift at the end of the previous half if the last measurement of that
+    // half gave the largest distance. Otherwise the shape had begun to move back, and `creep_before` is 0 [m].
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
     // The next columns are measured in the moving frame of the body.
     Column<Real> frame_speed;  // greatest speed of a node relative to the frame in this step [m/s]
-    // Greatest displacement of a node relative to the frame since `displacement` was last zero: the maximum of
-    // |position - displacement_origin - frame.offset| [m].
+    // Greatest displacement of a node relative to the frame since the last reset of this column to zero [m]: the
+    // maximum of |position - displacement_origin - frame.offset|. A reset stores the present positions in
+    // displacement_origin.
     Column<Real> displacement;
-    // Sum of the changes of `displacement`, except its resets to zero [m]. Upper bound of the motion of a node relative
-    // to the frame from an earlier time t until now: travel - travel(t) + 2 displacement(t), where (t) marks the values
-    // at the time t (docs/methods/collision.md 2.1).
+    // Counter that bounds how far nodes move relative to the frame [m]. It is the sum of the changes of `displacement`,
+    // except its resets to zero. Since an earlier time t, no node has moved relative to the frame by more than travel -
+    // travel(t) + 2 displacement(t), where (t) marks the values at the time t (docs/methods/collision.md 2.1).
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;

@@ -82,8 +82,9 @@ struct CableTable {
 };
 
 /// Equations of a cable, or of a tie of the kind `ball` (TieKind), in a step. Unlike a contact, a block has any number
-/// of points. In the block of a tie, all points get the same impulse, and the velocities of the points (weighted by
-/// their stencils) sum to zero.
+/// of points. A cable has one impulse for each segment: the impulse of the tension that pulls both ends of the segment
+/// together. A tie has one impulse vector, which acts on all its points. Its equation: the sum of the velocities of the
+/// points, weighted by their stencils, is zero.
 struct CableBlock {
     Index cable;   // row of CableTable; for a tie, row of TieTable
     Range points;  // rows of those columns of CableBlockTable that have one row per point
@@ -94,7 +95,8 @@ struct CableBlock {
     // [N s].
     Real prescribed;
     Real released;  // upper limit of the length at the end of the step [m]
-    // index of the first entry of the block's mobility matrix in the array of all these matrices in the region solver
+    // Index of the first entry of the block's mobility matrix, which gives the velocities that unit impulses of the
+    // block cause. The region solver stores the mobility matrices of all blocks one after the other in one array.
     Index mobility;
     bool is_tie = false;
     // For a tie: position at which its impulse acts on the object that the nodes are tied to [m]. The last point of the
@@ -115,8 +117,8 @@ struct CableBlockTable {
     Column<CableBlock> block;
     // The following columns have one row per point, except those marked `by block`.
     Column<Stencil> stencil;  // nodes and weights; all weights are 0 for points of colliders and of the world
-    // velocity that is added to the weighted velocity of the nodes. Point on a collider: the velocity of this point.
-    // Last point of a tie: minus the velocity that the tie prescribes. Other points: 0 [m/s]
+    // Velocity that is added to the weighted sum of the velocities of the point's nodes. Point on a collider: the
+    // velocity of this point. Last point of a tie: minus the velocity that the tie prescribes. Other points: 0 [m/s].
     Column<Vec3> velocity;
     Column<Vec3> direction;  // unit vector to the next point; 0 at the last point
     Column<Real> length;     // distance to the next point; 0 at the last point [m]

@@ -36,14 +36,15 @@ struct CavityTable {
     Column<CavityLaw> law;
     Column<std::uint8_t> closed;  // 1: every edge of a face belongs to two faces of the cavity
     Column<Range> faces;          // rows of `face`
-    // Rows of `key`, at least one. Law `pressure`: pressure above ambient [Pa]. Law `gas`: flow of gas into the cavity
-    // [kg/s]. Law `liquid`: volume that the liquid has at ambient pressure [m^3].
+    // Rows of `key`, at least one. These keys prescribe one quantity over time. Law `pressure`: pressure above ambient
+    // [Pa]. Law `gas`: flow of gas into the cavity [kg/s]. Law `liquid`: volume that the liquid has at ambient pressure
+    // [m^3].
     Column<Range> keys;
     Column<CavityFluid> fluid;
     Column<Real> mass;  // mass of the gas [kg]
-    // Volume of a cavity that is not closed, at the end of the last step, with its faces at `corners` [m^3]. The
-    // present volume is greater by the volume that the faces have swept since then. Unused if `closed` is 1 or the law
-    // is `pressure`.
+    // Volume of a cavity that is not closed, at the end of the last step [m^3]. The faces then had the nodes at
+    // `corners`. The present volume is greater by the volume that the faces have swept since then. Unused if `closed`
+    // is 1 or the law is `pressure`.
     Column<Real> volume;
     Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
     Column<Real> volume_now;    // volume at the start of this step [m^3]

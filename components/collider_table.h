@@ -80,8 +80,9 @@ struct ColliderTable {
     Column<Index> material;          // row of MaterialTable: material of the surface, or no_index
     Column<CollisionFilter> filter;  // groups that the collider belongs to, and groups that it collides with
     Column<Index> body;              // row of BodyTable: kinematic body of a mesh collider, else no_index
-    // Counter of motion. In any time interval, no point of the collider near a body moves further than the counter
-    // increases [m].
+    // Counter that bounds the motion of the collider from above. In any time interval, the points of the collider near
+    // bodies move no further than the counter increases [m]. Other points do not count, because a rotating plane moves
+    // arbitrarily fast far from its axis.
     Column<Real> travel;
 
     /// Visits the columns with one row per collider. The column `keyframe` is visited by for_each_column only.

@@ -133,8 +133,8 @@ struct WarmStartTable {
     Column<Vec3> impulse;  // [N s]
     Column<Vec3> normal;
     Column<Vec3> point;  // contact point [m]; empty if no body is rigid or implicit
-    // At most one row: time for which forces acted in the step that computed `impulse` [s]. There is no row if that
-    // step had no contacts.
+    // Time for which forces acted in the step that computed `impulse` [s]. If forces act for another time in the
+    // present step, the impulses are scaled by the ratio of the times. One row; no row if that step had no contacts.
     Column<Real> step;
 
     void for_each_column(auto&& visit) {

@@ -21,8 +21,9 @@ using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l is no
 using ElementGradient = std::array<ElementLane, 3>;  // component i of lane l is gradient[i][l] [1/m]
 using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
 using ElementForm = std::array<ElementLane, 6>;      // symmetric matrix: xx, yy, zz, xy, yz, zx
-// coefficients q [1/(kg m^2)] and b [kg m^2] of the mass |X|^2/q + b (R:X)^2 of an element. X: gradient of a
-// displacement; R: rotation of the body (frame_masses.h)
+// Coefficients q [1/(kg m^2)] and b [kg m^2] of the mass that an element gets in a bound on the stable step
+// (frame_masses.h). This mass is a quadratic form of node displacements: |X|^2/q + b (R:X)^2, with the gradient X of
+// the displacements and the rotation R of the body.
 using FrameMass = std::array<ElementLane, 2>;
 
 /// Number of Maxwell elements (a spring in series with a dashpot) that act in parallel with the material law of each
@@ -64,24 +65,25 @@ struct TetrahedronBlockTable {
 
 /// Elements that exert forces. An element has at least four nodes, one stress, and one deformation gradient F = sum_k
 /// x_k (x) g_k. x_k is the position and g_k the shape function gradient of node k (docs/methods/elasticity.md 1, 7).
-/// The number of rows of ElementNodeTable that a block has is the greatest node count of its elements. Elements with
-/// fewer nodes repeat some of their nodes with zero gradient. Unused lanes have no effect: their volume and gradients
-/// are zero, and they have nodes of the first element of the block. Element e of the table is lane e % element_lanes of
-/// block e / element_lanes.
+/// Element e of the table is lane e % element_lanes of block e / element_lanes. Unused lanes have no effect: their
+/// volume and gradients are zero, and they have nodes of the first element of the block. The number of rows of
+/// ElementNodeTable that a block has is the greatest node count of its elements. Elements with fewer nodes repeat some
+/// of their nodes with zero gradient.
 struct ElementBlockTable {
     Column<Index> first;         // first row of the block in ElementNodeTable
     Column<Index> count;         // number of rows of the block in ElementNodeTable
     Column<ElementLane> volume;  // volume at rest [m^3]; 0 for an unused lane and for an inactive inversion barrier
-    // weight of the element when the mass of a node is divided among its elements, for a bound on the stable step
-    // (stable_step.h)
+    // For a bound on the stable step, the mass of each node is divided among its elements in proportion to these
+    // weights (stable_step.h).
     Column<ElementLane> mass_share;
-    // Symmetric matrix Q [1/(kg m^2)]. For the bound on the stable step, the element gets the part G Q^-1 G^T of the
-    // mass of its nodes. The rows of G are the gradients of the nodes (mass_forms.h). Q = 0: mass_share is used
-    // instead.
+    // Symmetric matrix Q [1/(kg m^2)]. A bound on the stable step divides the mass matrix of the nodes among the
+    // elements. The element gets the part G Q^-1 G^T, called its mass form (mass_forms.h). Row k of G is the gradient
+    // of node k. Q = 0: the element has no mass form, and mass_share is used instead.
     Column<ElementForm> mass_form;
-    // `frame_mass`: coefficients of the mass that the element gets if one rotation is used for the whole body
-    // (frame_masses.h). `frame_bound`: upper bound of omega^2 that these masses give, where omega is the highest
-    // circular frequency of the body in its rest shape [1/s^2]; 0: the body has no such masses.
+    // A second bound on the stable step uses one rotation for the whole body (frame_masses.h). `frame_mass`:
+    // coefficients of the mass that the element gets in this bound. `frame_bound`: upper bound of omega^2 that these
+    // masses give for the rest shape, with the highest circular frequency omega of the body [1/s^2]; 0: the body has no
+    // such masses.
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound;
     // Stiffness that the implicit integration assumes for an element of a cluster; 0: the element is explicit [Pa].
@@ -149,7 +151,9 @@ inline constexpr Index slot_width = sizeof(PaddedVec3) / sizeof(Real);
 /// of node 0 is minus the sum of the gradients of all other nodes.
 struct ElementNodeTable {
     Column<NodeLane> node;
-    Column<NodeLane> slot;  // number of the node's slot in the patch, times slot_width: index of its first real
+    // Place of the node in the columns by slot of ElementPatches, seen as arrays of reals that begin with the patch:
+    // number of the node's slot within the patch, times slot_width.
+    Column<NodeLane> slot;
     // shape function gradient of the node in the rest shape, which plastic flow changes [1/m]
     Column<ElementGradient> gradient;
 
@@ -179,13 +183,14 @@ struct ElementPatches {
     Column<PaddedVec3> force;     // by slot: sum of the forces of the patch on the node [N]; scratch
     // by patch: energy that the Maxwell elements in the patch dissipated in this step [J]; scratch
     Column<Real> relaxed;
-    // Viscous impulse of the elements, by block; only set for blocks that are viscous in this step: those with an
-    // implicit element that is strongly strained. The column is empty if no block can be viscous. Scratch.
+    // Viscous impulse of the elements, by block. It is set only for viscous blocks. A block is viscous in this step if
+    // it has an implicit element that is strongly strained. The column is empty if no block can be viscous. Scratch.
     Column<ElementViscousImpulse> viscous_impulse;
     // by block: 1 if the block is viscous in this step; empty if no block can be viscous; scratch
     Column<std::uint8_t> viscous;
-    // Flag by block: 1 if the stiffness of an implicit element has nearly reached its implicit_modulus, so that
-    // stiffen_clusters must compute the stiffness exactly. The column is empty if no block can be viscous. Scratch.
+    // Flag by block: 1 if stiffen_clusters must compute the stiffness of the implicit elements exactly, because the
+    // stiffness of one of them has nearly reached its implicit_modulus. The column is empty if no block can be viscous.
+    // Scratch.
     Column<std::uint8_t> stiffening;
 
     /// Resizes viscous_impulse, viscous and stiffening to `count` blocks.

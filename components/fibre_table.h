@@ -36,8 +36,8 @@ struct FibreTable {
     Column<std::array<Real, 4>> slope;  // derivatives of the nodes' shape functions along the fibres [1/m]
     Column<Real> volume;                // at rest [m^3]
     Column<Vec3> passive;               // FibrePull::passive of the last step; only the energy balance uses it [Pa]
-    // upper bound of omega^2/E, where E is the modulus along the fibres, and omega the highest circular frequency of
-    // the tetrahedron due to the fibres alone; written by weigh_fibres [1/(Pa s^2)]
+    // Upper bound of omega^2/E, by which the fibres limit the stable step. E is the modulus along the fibres, and omega
+    // the highest circular frequency of the tetrahedron due to the fibres alone. Written by weigh_fibres [1/(Pa s^2)].
     Column<Real> mobility;
     Column<FibrePull> next;  // written by add_fibre_forces
     Column<TimeKey> key;     // active tensions of all families [Pa]

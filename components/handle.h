@@ -70,8 +70,8 @@ public:
         if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
     }
 
-    /// Ensures that no handle made from now on equals a handle that `other` has issued. Handles of `other` that are
-    /// stale in this map thus stay stale. `other`: map of the same world, which this map replaces (World::reset).
+    /// Prepares this map to replace `other`, a map of the same world (World::reset). No handle made from now on equals
+    /// a handle that `other` has issued. Handles of `other` that are stale in this map thus stay stale.
     void differ_from(const HandleMap& other) {
         least_generation_ = std::max(least_generation_, other.least_generation_);
         for (std::size_t slot = 0; slot < other.row_.size(); ++slot)

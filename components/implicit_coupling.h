@@ -19,9 +19,9 @@ struct ImplicitCoupling {
     Column<std::span<const Real>> response;
     // Matrices, one for each row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world
     // frame. `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
-    // parameter theta of the time integration. If the body is in a long step, which covers several steps of the world,
-    // the matrix also contains the factor t/h. h is the length of this step, and t the time from the start of the long
-    // step to the end of this step (docs/methods/implicit_bodies.md 9).
+    // parameter theta of the time integration. It also contains the factor t/h if the body is in a long step, which
+    // covers several steps of the world: h is the length of the present step of the world, and t the time from the
+    // start of the long step to the end of the present step (docs/methods/implicit_bodies.md 9).
     Column<Mat3> turn, impulse_turn;
     Column<Index> touched_index;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
 

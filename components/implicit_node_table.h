@@ -13,10 +13,11 @@ struct ImplicitNodeTable {
     Column<Vec3> displacement;  // displacement u by the deformation, in the frame of the mesh [m]
     // deformation velocity w; for a body held by an attachment: world velocity in the axes of the frame [m/s]
     Column<Vec3> velocity;
-    // Change of the velocity w by contacts in the previous long step, times the length of that step [m]. A long step is
-    // a step of the body that covers several steps of the world. The present long step first assumes that these
-    // contacts act again, and gradually replaces them by its own contacts (docs/methods/implicit_bodies.md 9). Zero for
-    // bodies without long steps. carry_long_steps writes the column.
+    // Effect of the contacts of the previous long step. A long step is a step of the body that covers several steps of
+    // the world. The present long step first assumes that these contacts act again, and gradually replaces them by its
+    // own contacts (docs/methods/implicit_bodies.md 9). The value is the change of the velocity w by these contacts,
+    // times the length of the previous long step [m]. Zero for bodies without long steps. carry_long_steps writes the
+    // column.
     Column<Vec3> left;
     // kick_implicit_bodies writes the next three columns in this step.
     Column<Vec3> elastic_force;

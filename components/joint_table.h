@@ -152,14 +152,15 @@ struct AxisLaw {
     Real kick = 0;  // time for which forces act in this step [s]
 };
 
-/// Part of a block in a mimic equation, which couples the velocities u and u_leader along the axes of two joints: c u +
-/// c_leader u_leader = r. c and c_leader are coefficients, and the rate r corrects the error of the coordinates
-/// (docs/methods/joints.md 5). The equation has two adjacent blocks: the block of the joint that mimics, then that of
-/// its leader. Only the third rows of these blocks are used.
+/// Role of a block in a mimic equation. Such an equation couples the velocities u and u_leader along the axes of two
+/// joints: c u + c_leader u_leader = r. c and c_leader are coefficients, and the rate r corrects the error of the
+/// coordinates (docs/methods/joints.md 5). The equation is stored in two adjacent blocks: first the block of the joint
+/// that mimics, then that of its leader. Only the third rows of these blocks are used.
 struct MimicShare {
     Real coefficient = 0;  // c of the block; 0: the block belongs to no mimic equation
     bool leads = false;    // true for the block of the leader
-    // own_node() of the other block of the equation; needed to put both blocks into one contact region
+    // Node that represents the other block of the equation in the search for contact regions (JointBlock::own_node). It
+    // serves to put both blocks into one region.
     Index other_node = no_index;
 };
 
@@ -178,7 +179,9 @@ struct JointBlock {
     Vec3 error;  // position error of the joint along the locked directions [m or rad]
     AxisLaw axis;
     MimicShare mimic{};
-    Vec3 shift = Vec3::Zero();  // vector from the joint's point to `point`, in the axes of the first joint frame [m]
+    // Vector from the joint's point to `point`, in the axes of the first joint frame [m]. Zero for a ball joint. For
+    // other joints `point` is chosen near the centre of mass, where velocity and spin are coupled least (shift_of()).
+    Vec3 shift = Vec3::Zero();
 
     /// first_node, or second_node if impulses cannot move the first body; no_index if they can move neither body.
     Index own_node() const { return first_node == no_index ? second_node : first_node; }
@@ -200,8 +203,8 @@ struct JointBlockTable {
     Column<AxisImpulses> axis_impulse;  // by block: impulses along the joint axis
     Column<Real> coordinate;            // by row of JointTable: joint coordinate at the start of the step
     // For each row of JointTable: 1 if neither body of the joint can move, because it is asleep, held, or the world.
-    // The joint then has no block and keeps its last impulse. While no body of the world sleeps, the value is 0 for all
-    // joints.
+    // The joint then has no block and keeps its last impulse. Exception: while no body of the world sleeps, joints are
+    // not tested, and the value is 0 for all of them.
     Column<std::uint8_t> resting;
 
     std::size_t size() const { return block.size(); }

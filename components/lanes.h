@@ -33,9 +33,9 @@ typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2))
 typedef float Float8 __attribute__((vector_size(sizeof(float) * element_lanes)));
 typedef float Float4 __attribute__((vector_size(sizeof(float) * element_lanes / 2)));
 
-// Types for loads of vectors from the address of any Real. They need no alignment and may alias other reals. memcpy is
-// not used, because without 512-bit registers the compiler turns it into copies of 16 bytes. A load of 32 bytes right
-// after such copies would have to wait for them.
+// Types for loads of vectors from the address of any Real. They need no alignment and may alias other reals. memcpy
+// would be slower: without 512-bit registers the compiler turns it into copies of 16 bytes to a temporary variable. A
+// load of 32 bytes from this variable would have to wait for these copies.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 typedef float Float8InMemory __attribute__((vector_size(sizeof(Float8)), may_alias));

@@ -57,10 +57,10 @@ inline constexpr std::uint64_t value_count<ElementPart> = 4;
 /// Ratio of the modulus of the inversion barrier to the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
 
-/// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero. If
-/// the material yields, the part `shear` has lambda = -2/3 mu. Its bulk modulus lambda + 2/3 mu is then zero. Otherwise
-/// the elements of this part would resist plastic flow, which keeps the volume (volumetric locking). The constants of
-/// an inversion barrier include no damping.
+/// Material constants for one part of the stress. The part due to one Lame constant keeps this constant, and the other
+/// constant is zero. Exception: in a material that yields, the part `shear` has lambda = -2/3 mu, so that its bulk
+/// modulus lambda + 2/3 mu is zero. With lambda = 0 it would resist changes of volume. Its elements would then hinder
+/// plastic flow, which keeps the volume (volumetric locking). The constants of an inversion barrier include no damping.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,

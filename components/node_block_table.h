@@ -16,8 +16,8 @@ inline constexpr Index sphere_step_nodes = 13;  // the centre and the 12 corners
 // Number of nodes of a capsule that take part in a step: both ends of the axis, and on each end cap its pole and four
 // points of its rim.
 inline constexpr Index capsule_step_nodes = 12;
-// Number of core nodes of a cylinder. All nodes of a cylinder take part in a step, because the nodes on its rims show
-// its rotation.
+// Number of core nodes of a cylinder. All nodes of a cylinder take part in a step, because its rotation is measured
+// from the nodes on its rims.
 inline constexpr Index cylinder_core_nodes = 3;
 
 /// The nodes of a body that take part in a step. `all`: all nodes of the body. `core_nodes`: see BodyTable.

@@ -76,9 +76,12 @@ enum class OverlapKind {
 /// Time integrators (docs/step_length.md). Both alternate a kick, in which forces change velocities, and a drift, in
 /// which velocities change positions.
 enum class Integrator {
-    symplectic_euler,  // first order in the step length if started from given velocities; bounded energy error
-    // Second order in smooth motion: in a call of World::advance, the positions also drift forward by half a step
-    // before the first step, and back by half a step after the last step.
+    // First order in the step length, because given velocities count as those of half a step before the start. The
+    // energy error stays bounded.
+    symplectic_euler,
+    // Second order in smooth motion, because forces are computed at the positions in the middle of each step. To this
+    // end, in a call of World::advance, the positions drift forward by half a step before the first step, and back by
+    // half a step after the last step.
     leapfrog,
 };
 

@@ -56,8 +56,8 @@ struct NearCandidate {
 struct LeafPair {
     Index first;
     Index second;
-    // Lower bound: two features of these leaves that are missing in the candidate list must approach each other by more
-    // than this distance before they can touch [m].
+    // Lower bound of the distance by which two features of these leaves must approach each other before they can touch,
+    // if the candidate list does not contain them [m].
     Real spare;
 };
 template <>
@@ -71,7 +71,8 @@ struct LeafPairTable {
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
     Column<LeafPair> listed;
     Column<LeafPair> before;  // working memory: the list `listed` before it is made anew
-    // pairs of leaves whose features the last search compared; LeafPair::spare is the margin of this search
+    // Pairs of leaves whose features the last search compared. Their LeafPair::spare is the margin of this search [m]:
+    // it found all features of these leaves that are nearer to each other than the contact zone plus the margin.
     Column<LeafPair> searched;
 };
 
@@ -83,8 +84,8 @@ struct SelfSearch {
     // For each node: displacement from `origin` to the present position, without the common rotation of the body [m].
     // The check at the end of a step uses the position at the end of the step instead of the present one.
     Column<Vec3> moved;
-    // Boxes by row of BvhTable: each contains the vectors `moved` [m] or the velocities [m/s] of all mesh nodes below a
-    // node of the tree.
+    // Boxes by row of BvhTable. A box of `moved_box` contains the vectors `moved` of all mesh nodes below this node of
+    // the tree [m], a box of `speed_box` their velocities [m/s].
     Column<Aabb> moved_box, speed_box;
     // For each row of VertexTable, EdgeTable and TriangleTable: row of BvhTable of the leaf that owns the feature.
     Column<Index> leaf_of_vertex, leaf_of_edge, leaf_of_triangle;
@@ -110,23 +111,25 @@ struct PairTable {
     // plus the path length of the body's frame.
     Column<Real> travel;
     Column<Real> travel_bound;  // `travel` plus the distance by which the partners may approach in this step [m]
-    // Distance by which the partners may approach in this step at their greatest speeds [m]. It is computed from
-    // velocities relative to the world, not to the moving frames of the bodies: contacts depend on this distance, and
-    // no result may depend on the frames, which have the role `memory`.
+    // Distance by which the partners may approach in this step at their greatest speeds [m]. The speeds are relative to
+    // the world, not to the moving frames of the bodies. Reason: contacts depend on this distance, but no result may
+    // depend on the frames, which have the role `memory`.
     Column<Real> closing;
-    // Request of an earlier attempt at this step for a longer candidate list: relative motion of the partners that the
-    // list must allow [m]; 0: no request. Once the list has been rebuilt for this motion, the value is made negative,
-    // so that no list is requested twice for one motion.
+    // Request of an earlier attempt at this step, in which the partners moved too far for the candidate list: relative
+    // motion for which the list must be valid [m]; 0: no request. Once the list has been rebuilt for this motion, the
+    // value is made negative. A list for the same motion is then not requested again.
     Column<Real> longer_motion;
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
-    // 1: the candidate list was made at the positions at the start of this step. The list then stays valid longer,
-    // because displacements of nodes in the moving frames before this step do not count (is_beyond_list).
+    // 1: the candidate list was made from the positions at the start of this step. valid_until allows for displacements
+    // of nodes in the moving frames before this step. Such a list contains these displacements already, so it stays
+    // valid longer (is_beyond_list).
     Column<std::uint8_t> rebuilt;
     // State of the surfaces at the last search; not used for a body and an analytic collider. Surfaces that are apart
-    // stay apart, because find_crossings prevents them from crossing.
+    // are not tested again, because find_crossings prevents them from crossing.
     Column<PairState> state;
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by `feature`
-    // The features of a candidate cannot touch while travel_bound is below this value [m]; by pair and candidate.
+    // A candidate is asleep, which means that it is not tested, while travel_bound is below this value, because its
+    // features cannot touch until then [m]. By pair and candidate.
     std::vector<Column<Real>> asleep_until;
     std::vector<LeafPairTable> leaf_pairs;  // by pair; empty for two bodies, and for a body and a collider
     // For each group of consecutive pairs: cost of testing their candidates. cut_blocks then replaces it by the sum of
@@ -292,9 +295,9 @@ struct SearchState {
     void forget_body(std::size_t row) {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
     }
-    /// Ends an attempt at a step. If the step was `committed`, the speeds of all bodies are known. Otherwise the speeds
-    /// of bodies that were forgotten at the start of the step are still unknown. These bodies are then marked as
-    /// forgotten again.
+    /// Ends an attempt at a step. A `committed` step has measured the speeds of all bodies. After a rejected attempt,
+    /// the speeds of bodies that were forgotten at the start of the step are still unknown. These bodies are then
+    /// marked as forgotten again.
     void end_step(bool committed) {
         if (!memory.any_unmeasured) return;
         for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)

@@ -40,8 +40,8 @@ struct RigidBodyTable {
     // Impulse of gravity and external loads in this step, and their angular impulse about the centre of mass [N s, N m
     // s].
     Column<Vec3> kick, moment_kick;
-    // solve_regions adds to the columns contact_impulse to push_spin, which are zero when the step begins. The first
-    // two contain the impulse of all contacts, and their angular impulse about the centre of mass [N s, N m s].
+    // The columns from contact_impulse to push_spin are zero when the step begins, and solve_regions adds to them. The
+    // first two contain the impulse of all contacts, and their angular impulse about the centre of mass [N s, N m s].
     Column<Vec3> contact_impulse, contact_moment;
     // Velocity and angular velocity of the push-out, the motion that separates overlapping bodies. They change the pose
     // in this step, but not the momentum [m/s, rad/s].

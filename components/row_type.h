@@ -30,7 +30,7 @@ struct Member;
 struct RowType {
     std::size_t bytes;                            // size of a row [bytes]
     void (*make)(void* rows, std::size_t count);  // value-initialises `count` rows; vectors and matrices become zero
-    // Count of the numbers in a row that consists of numbers of one type, without padding; 0 for all other rows.
+    // Number of numbers in a row if all of them have one type and the row has no padding; 0 for all other rows.
     std::size_t width = 0;
     NumberType number = NumberType::uint8;  // type of the numbers in a row
     std::uint64_t values = 0;               // the numbers must be below this limit (value_count); 0: no limit
@@ -90,8 +90,9 @@ struct MembersOf;
 template <class Enum>
 struct EnumNames;
 
-/// Number of values of T: 2 for bool, n for an enum with the values 0 to n - 1. A value loaded from a file must be
-/// smaller than this number. 0 for all other types, and for enums whose loaded values are not checked.
+/// Number of values that an object of type T can have: 2 for bool, n for an enum with the values 0 to n - 1. A value
+/// loaded from a file must be smaller. 0 means that loaded values are not checked. This holds for all other types, and
+/// for some enums.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>

@@ -11,20 +11,20 @@
 
 namespace skerry {
 
-/// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
-/// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If the exchange fails,
-/// because another thread has attached that root meanwhile, the join is repeated from the new root. Parents are thus
-/// always smaller than their children. So the root of a set is its smallest index, whatever the number of threads and
-/// the order of the joins. Relaxed memory order suffices, because parent and stamp share one word, and no word tells a
-/// thread that other data are ready. Threads must synchronise before they read the final sets.
+/// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). The
+/// root of a set is its smallest index, whatever the number of threads and the order of the joins. Reason: a join
+/// always attaches the greater of two roots to the smaller one, so parents are smaller than their children. A join is
+/// one compare-and-exchange. If it fails, because another thread has attached the greater root meanwhile, the join is
+/// repeated from the new root. Relaxed memory order suffices, because parent and stamp share one word, and no word
+/// tells a thread that other data are ready. Threads must synchronise before they read the final sets.
 struct SharedUnionFind {
     /// Each member is a word of two halves of 32 bits. The upper half is the stamp: the value of `now`, the number of
     /// the present start(), when the word was written. A word with an earlier stamp counts as empty. The lower half is
-    /// the value that the member describes.
+    /// the value: in `parent` the index of the parent, in `first` an item.
     struct Node {
         std::uint64_t parent;
-        // At the root: bitwise complement of the smallest item passed to begin_with(). A smaller item thus gives a
-        // larger word, and an empty word is the smallest.
+        // At the root: smallest item passed to begin_with(), stored as its bitwise complement. Complete words can then
+        // be compared: a smaller item gives a larger word, and an empty word, with its earlier stamp, is the smallest.
         std::uint64_t first;
     };
 

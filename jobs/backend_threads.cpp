@@ -139,8 +139,8 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // The flag is copied before `helpers` is reduced. As soon as `helpers` is zero, the thread that called
-            // run_blocks may return and destroy *open, if it does not sleep.
+            // The flag is copied before `helpers` is reduced. Reason: if the thread that called run_blocks does not
+            // sleep, it may return and destroy *open as soon as `helpers` is zero.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;

@@ -16,8 +16,8 @@ bool conflict(const AccessList& a, const AccessList& b) {
     });
 }
 
-/// True if the accesses `written` of one stage write an object that another stage, with the accesses `taken`, declares
-/// as a value.
+/// True if a stage writes an object that another stage declares as Use::value, and therefore no stage may write.
+/// `written`: accesses of the first stage. `taken`: accesses of the second stage.
 bool breaks_value(const AccessList& written, const AccessList& taken) {
     return std::ranges::any_of(written, [&](const Access& access) {
         return access.writes() && std::ranges::any_of(taken, [&](const Access& other) {

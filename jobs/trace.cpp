@@ -65,7 +65,8 @@ Trace::Worker& Trace::worker_of_this_thread() {
     thread_local Worker* known = nullptr;
     if (known_id == id_) return *known;
 
-    // This thread has recorded no zone in this trace yet, or it has recorded one in another trace since then.
+    // `known` points to no list of this trace: the thread has not yet recorded a zone in this trace, or the last zone
+    // that it has recorded belongs to another trace.
     std::lock_guard lock(mutex_);
     known = nullptr;
     for (const auto& worker : workers_)

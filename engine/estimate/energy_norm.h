@@ -24,12 +24,12 @@ public:
 
 private:
     bool is_anisotropic_;
-    // `of_shear_`, `of_volume_`: square roots of the compliances of the deviatoric and of the volumetric part of a
-    // stress [Pa^(-1/2)]. `pressure_`: pressure of the volumetric part of a complete stress, divided by the trace of
-    // the stress.
+    // Factors for isotropic materials. `of_shear_`, `of_volume_`: square roots of the compliances of the deviatoric and
+    // of the volumetric part of a stress [Pa^(-1/2)]. A complete stress has a volumetric part with the pressure
+    // `pressure_` times the trace of the stress.
     Real of_shear_ = 0, of_volume_ = 0, pressure_ = 0;
-    // Inverse of the Cholesky factor of the stiffness of an anisotropic material, for the entries xx, yy, zz, xy, yz,
-    // zx.
+    // For an anisotropic material: matrix that maps the entries xx, yy, zz, xy, yz, zx of a stress to its coordinates.
+    // It is the inverse of the Cholesky factor of the stiffness [Pa^(-1/2)].
     Eigen::Matrix<Real, 6, 6> of_all_ = Eigen::Matrix<Real, 6, 6>::Zero();
 };
 

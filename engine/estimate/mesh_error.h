@@ -28,8 +28,8 @@ struct MeshError {
     Real mesh() const;
     /// Relative error of a displacement under given loads, positive if the mesh is too stiff.
     Real deflection() const;
-    /// Results of mesh_error(): sqrt(e / E) for each tetrahedron, with the energy e of its stress error per volume, and
-    /// the energy E of the stress and the stress error of the whole body per volume.
+    /// Results of mesh_error(): sqrt(e / E) for each tetrahedron. e: energy of the stress error of the tetrahedron, per
+    /// volume. E: sum of the energies of the stress and of the stress error of the whole body, per volume.
     std::vector<Real> relative_errors() const;
 };
 

@@ -200,8 +200,8 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
                  : (now.angular_velocity - start.angular_velocity).norm();
     const Real change = std::hypot((now.velocity - start.velocity).norm(), radius * turned);
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
-    // `accelerated`, an upper limit of the change, assumes the initial acceleration throughout. So sudden later
-    // changes, as in collisions, do not count in full.
+    // `accelerated` is the change of the velocity that the initial acceleration would have caused until now. It is an
+    // upper limit of the change that counts, so that sudden later changes, as in collisions, do not count in full.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
@@ -240,9 +240,9 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     if (!implicit) {
         return (motion.lead + start_shift(world, motion.first_step)) * speed;
     }
-    // Root mean square displacement of the vibrations that began between the samples. It is estimated as the change of
-    // the displacements between the samples, minus its value by the trapezoidal rule from the velocities at both
-    // samples.
+    // Root mean square displacement of the vibrations that began between the two samples. It is estimated as the part
+    // of the change of the displacements that the velocities at both samples do not explain: the change minus the
+    // integral of the velocities by the trapezoidal rule.
     const Real begun = mean_size(world, body, [&](std::size_t n) {
         return Vec3(after.displacement[n] - before.displacement[n] -
                     interval.seconds / 2 * (after.velocity[n] + before.velocity[n]));

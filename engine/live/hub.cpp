@@ -36,7 +36,8 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     Client& client = clients_.emplace_back();
     client.number = ++last_client_;
     client.link = &link;
-    // The browser counts as having the last snapshot, which may be outdated. Its first frame then comes from a new one.
+    // The last snapshot counts as already sent to the new browser, because it may be outdated. The first frame of this
+    // browser thus comes from a later snapshot.
     client.snapshot = last_snapshot_;
     if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
@@ -266,8 +267,8 @@ void LiveHub::serve(Client& client) {
         }
         lock.lock();
         if (std::exchange(outgrown, false)) client.run = 0;  // run_ is at least 1, so the next turn starts a new stream
-        // The snapshot is released under the lock, so that free_snapshot() returns it only after it was read
-        // completely.
+        // The snapshot is released only here, after this thread has read it completely, and while the mutex is locked.
+        // free_snapshot() therefore never returns a snapshot that a thread still reads.
         snapshot.reset();
     }
     client.closed = true;

@@ -103,13 +103,13 @@ private:
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
         bool closed = false;                          // true: its thread ends the connection
-        FrameContent content = FrameContent::motion;  // least content with the fields that it shows
+        FrameContent content = FrameContent::motion;  // smallest content that has all fields that the browser shows
         bool pulls = false;                           // true: the browser pulls a body
         std::deque<std::string> texts;                // messages that wait for its thread
         // number of the run that its stream shows; 0: it needs a new stream
         std::uint64_t run = 0;
         std::uint64_t snapshot = 0;        // number of the last snapshot that the browser got
-        std::uint64_t version = 0;         // version of this snapshot; 0: the browser needs a frame
+        std::uint64_t version = 0;         // value of version_ in this snapshot; 0: the browser needs a new frame
         std::uint64_t sent = 0, seen = 0;  // numbers of the last frames sent and acknowledged
         std::vector<BodyHandle> bodies;    // copy of LiveEncoder::bodies of its stream
         std::thread thread;

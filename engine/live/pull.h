@@ -19,11 +19,11 @@ struct PullState {
 };
 
 /// Drags a body by a spring without rest length from a point of its surface to a target. The stiffness is m (2 pi f)^2
-/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. For a deformable body, up to
-/// 12 parallel springs around the point share stiffness and force equally. A drag field damps the body critically: the
-/// distance of a stiff free body from the target decreases with the time t as (1 + w t) exp(-w t), w = 2 pi f. The
-/// field acts on the whole body, because a damper at the point would shorten the step of a fine mesh much more. With
-/// springs and field the step is about 3 % shorter, for an implicit body 25 %.
+/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. A deformable body has up to 12
+/// parallel springs around the point, each with the same share of stiffness and largest force. A drag field on the
+/// whole body damps it critically: the distance of a stiff free body from the target decreases as (1 + w t) exp(-w t)
+/// with the time t and w = 2 pi f. A damper at the point would shorten the step of a fine mesh much more than springs
+/// and drag field together do (by about 3 %, for an implicit body by 25 %).
 ///
 /// The springs and the field are objects of the world until end(). They are removed with the body. World::reset to a
 /// clone without them ends the pull.

@@ -39,8 +39,8 @@ struct Snapshot {
 /// Takes snapshots of a world. Surfaces and shapes, which do not change, are copied once and shared by all snapshots.
 class SnapshotTaker {
 public:
-    /// Replaces the content of `snapshot`, and reuses its memory. FrameContent::mesh_error includes the energy. For a
-    /// lesser content, the energy takes an extra pass over all elements. It is then calculated so rarely that it takes
+    /// Replaces the content of `snapshot`, and reuses its memory. FrameContent::mesh_error includes the energy. With a
+    /// lesser content, an extra pass over all elements calculates the energy. This pass is made so rarely that it takes
     /// at most 1 % of the wall time, and the snapshots in between get the last result.
     void take(const World& world, FrameContent content, Snapshot& snapshot);
     /// Returns true if the time is earlier than in the last snapshot, or if a body has other numbers of nodes or

@@ -200,8 +200,8 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
                    "modulus and exponent of the same sign, not zero");
         twice_shear += modulus * exponent;
     }
-    // The products in the loop are positive, and so is the shear modulus. With a positive bulk modulus, Poisson's ratio
-    // is then between -1 and 0.5.
+    // Besides the products in the loop, only the bulk modulus needs a check. The shear modulus is half the sum of these
+    // products, so it is positive; if the bulk modulus is positive, too, Poisson's ratio is between -1 and 0.5.
     if (!(bulk_modulus > 0))
         refuse("material", "bulk_modulus", std::to_string(bulk_modulus) + " Pa", "a modulus > 0 (Pa)");
     const Real shear = twice_shear / 2;

@@ -99,10 +99,11 @@ bool any_overlap(const Mesh& mesh) {
     return false;
 }
 
-/// Reverses the inverted tetrahedra of a mesh, whose node numbers must be valid. Some programs list the nodes of all or
-/// some tetrahedra in the opposite order, and then reversal is right. In other faulty files a node lies in a wrong
-/// place and inverts the tetrahedra around it; reversed, these would overlap their neighbours across faces. If only
-/// some tetrahedra are inverted and reversal makes any overlap, all stay as they are.
+/// Reverses the inverted tetrahedra of a mesh, whose node numbers must be valid. Reversal is right for files of
+/// programs that list the nodes of all or some tetrahedra in the opposite order. In other faulty files a node lies in a
+/// wrong place and inverts the tetrahedra around it; after reversal, these would overlap their neighbours across faces.
+/// Therefore, if only some tetrahedra are inverted, and reversal makes any of them overlap a neighbour, all stay as
+/// they are.
 void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)

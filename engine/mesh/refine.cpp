@@ -27,8 +27,8 @@ std::array<Index, 3> picked(const std::array<Index, N>& corners, const std::arra
     return {corners[position[0]], corners[position[1]], corners[position[2]]};
 }
 
-/// Collects the midpoints of edges that a refinement adds to a set of nodes, so that the set still covers the faces and
-/// edges that it covered.
+/// Finds the midpoints of edges that belong to a set of nodes after a refinement. With these midpoints the set covers
+/// the same faces and edges as before.
 class MidpointMarks {
 public:
     MidpointMarks(std::size_t node_count, const std::vector<Index>& nodes) : in_set_(node_count), on_face_(node_count) {
@@ -40,9 +40,10 @@ public:
         for (const Index n : corners) on_face_[static_cast<std::size_t>(n)] = true;
         found_.insert(found_.end(), midpoints.begin(), midpoints.end());
     }
-    /// Adds the midpoint of an edge with both ends in the set. Call add_face() for all faces first: it has added the
-    /// midpoints of all edges of faces that lie in the set. If both ends are nodes of such faces, add_edge() therefore
-    /// adds nothing, because another edge between such nodes only connects two faces.
+    /// Adds the midpoint of an edge with both ends in the set, unless both ends are nodes of faces that lie in the set.
+    /// Such an edge is either a side of one of these faces, so that add_face() has added its midpoint, or it only
+    /// connects two of these faces, so that its midpoint does not belong to the set. Call add_face() for all faces
+    /// first.
     void add_edge(std::size_t a, std::size_t b, Index midpoint) {
         if (in_set_[a] && in_set_[b] && !(on_face_[a] && on_face_[b])) found_.push_back(midpoint);
     }

@@ -20,8 +20,8 @@ std::string name_in_file(const std::string& name) {
     return '"' + text + '"';
 }
 
-/// Writes the names of the sets of nodes (as groups of points) and of faces (as groups of surfaces). The numbers of
-/// these physical groups count the sets from 1.
+/// Writes the names of the sets of nodes (as physical groups of points) and of faces (as physical groups of surfaces).
+/// A group has the number of its set, counted from 1.
 void write_names(std::ostream& out, const std::map<std::string, MeshSet>& sets) {
     std::size_t count = 0, number = 0;
     for (const auto& [name, set] : sets) count += (set.nodes.empty() ? 0u : 1u) + (set.faces.empty() ? 0u : 1u);

@@ -16,9 +16,9 @@
 
 namespace skerry {
 
-/// State of a body in one frame of output. After collect_frame() the spans refer to arrays of the World and are valid
-/// until the world changes. A Snapshot (frame of a live view) lets them refer to copies. Values that the FrameContent
-/// of collect_frame() does not include are empty.
+/// State of a body in one frame of output. In a frame from collect_frame(), the spans refer to arrays of the World and
+/// are valid until the world changes. In a Snapshot (frame of a live view), they refer to copies. Members whose values
+/// the FrameContent of collect_frame() does not include are empty.
 struct BodyFrame {
     BodyHandle handle;
     std::string name;

@@ -51,8 +51,8 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    // Least number of minutes, hours or days that is written in that unit. A shorter duration is written in the next
-    // smaller unit.
+    // A duration is written in days, hours or minutes only if it is at least this number of them. A shorter one is
+    // written in the next smaller unit.
     constexpr double enough = 2;
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_text(seconds / unit.seconds) + unit.name;

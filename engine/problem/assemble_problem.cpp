@@ -67,9 +67,10 @@ private:
 };
 
 /// Adds the blocks of W between contacts on the same rigid body, and between contacts on the same implicit body due to
-/// its rigid motion. Two contacts a and b with the weights w and the arms x, from the centre of mass to the contact
-/// point, are coupled by w_a w_b (I / m + [x_a] J^-1 [x_b]^T), where m is the mass, J the inertia tensor, and [x] v = x
-/// cross v.
+/// its rigid motion. A touch is a node of the body in the stencil of a contact. Each pair of touches a and b
+/// contributes w_a w_b (I / m + [x_a] J^-1 [x_b]^T) to the block of their contacts. w: weight of the node in the
+/// stencil; x: arm from the centre of mass to the node, for a round body to its contact point; m: mass; J: inertia
+/// tensor; [x] v = x cross v.
 void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     const auto crossing = [](const Vec3& v) {
@@ -155,9 +156,10 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
-                // Contribution of one node to W_ij = S_ij I (docs/methods/contact.md 2.1), rotated into the contact
-                // frames; bitwise symmetric. In a diagonal block both rotations cancel. They are left out there,
-                // because they would add rounding errors.
+                // Contribution w_i w_j / m of one node to S_ij. In world axes the block is W_ij = S_ij I
+                // (docs/methods/contact.md 2.1); here it is rotated into the frames of both contacts, bitwise
+                // symmetric. In a diagonal block both rotations cancel. They are left out there, because they would add
+                // rounding errors.
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

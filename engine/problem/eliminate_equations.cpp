@@ -15,8 +15,9 @@ namespace skerry {
 
 namespace {
 
-/// A linear function of velocities: u = sum of `along` . velocity + `turn` . angular velocity, over nodes and bodies.
-/// An impulse s of the row gives each of them the impulse s `along` and the angular impulse s `turn`.
+/// A linear function of velocities: u = (sum over nodes of `along` . velocity) + (sum over bodies of `along` . velocity
+/// + `turn` . angular velocity). An impulse s of the row gives each node and each body the impulse s `along`, and each
+/// body also the angular impulse s `turn`.
 struct VelocityRow {
     struct OnNode {
         Index node;
@@ -42,10 +43,10 @@ struct VelocityRow {
     }
 };
 
-/// The quantity of an equation that stays as it was in the step when the contact impulses change.
-/// - velocity: its velocity; its impulse in the step is known.
-/// - impulse: its impulse.
-/// - held: its velocity; its impulse in the step is not known (see find_held_impulses()).
+/// Quantity of an equation that keeps its value of the step when the contact impulses change.
+/// - velocity: the velocity of the row. The impulse of the row in the step is known.
+/// - impulse: the impulse of the row.
+/// - held: the velocity of the row. The impulse of the row in the step is not known; find_held_impulses() computes it.
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
@@ -88,9 +89,9 @@ public:
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
-            // Lever arm from the core of a round body (its centre or axis) to the contact point. beside_core() returns
-            // the arm times the sum of the weights of all nodes of the body. So it is added only once, with the first
-            // of these nodes.
+            // beside_core() returns the lever arm from the core of a round body (its centre or axis) to the contact
+            // point, times the sum of the weights of all nodes of the body. So it is added only once, with the first of
+            // these nodes.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& term) { return term.frame == frame; });
@@ -130,8 +131,8 @@ public:
     }
 
 private:
-    /// Velocity change of node `a` due to the impulse `impulse` on node `b`. The rigid motion of their body is not
-    /// included: the frames of the rows describe it.
+    /// Velocity change of node `a` due to the impulse `impulse` on node `b`. For nodes of an implicit body it is
+    /// relative to the rigid motion of the body, which VelocityRow::frames describes.
     Vec3 of_nodes(Index a, Index b, const Vec3& impulse) const {
         const Index frame = inputs_.rigid.nodes.row(a);
         if (frame != no_index) {
@@ -199,8 +200,8 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
 }
 
 /// Adds the rows of welds and slides. A weld (a tie without motion) has three rows, along the world axes. A slide (a
-/// tie with tangential motion) has one row. Its direction is the whole impulse vector of the step, not a unit vector,
-/// so its impulse is 1.
+/// tie with tangential motion) has one row. The direction of this row is not a unit vector, but the whole impulse
+/// vector of the tie in the step. The impulse of the row, a factor of this vector, is therefore 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -224,8 +225,8 @@ void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mo
     }
 }
 
-/// Adds the three rows of a ball tie, which holds only the centre of mass of its points. Row k sums the velocity
-/// component k over all points of the tie.
+/// Adds the three rows of a ball tie, which holds only the centre of mass of the tied nodes. Row k sums the velocity
+/// component k over all points of the tie. The stencil weights of a point contain its share of the mass.
 void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                std::vector<EquationRow>& rows) {
     for (Index k = 0; k < 3; ++k) {
@@ -244,9 +245,10 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
 /// angle of 3e-4 rad: the solver's tolerance lets redundant joints drift apart by smaller angles.
 constexpr Real negligible_part = 1e-7;
 
-/// A contact counts as immovable if elimination reduces its inverse mass along the normal to less than this fraction of
-/// the value without joints. The fraction is the square of an angle of 1e-3 rad (see negligible_part). It may exceed
-/// `negligible_part`, because immovable contacts keep their impulses of the step in q.
+/// A contact counts as immovable if elimination reduces its inverse mass along the normal to at most this fraction of
+/// the value without joints. The fraction is the square of an angle of 1e-3 rad (see negligible_part). It can be larger
+/// than `negligible_part` without harm: an immovable contact still acts on the other contacts, because their q includes
+/// its impulse in the step.
 constexpr Real immovable_part = 1e-6;
 
 /// Pseudoinverse of a symmetric positive semidefinite matrix. Rows may have different units, so the matrix is first
@@ -340,7 +342,9 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     for (const EquationRow& equation : rows)
         mobilities.for_each_leader(equation.row,
                                    [&](Index leader) { sets.join(mobilities.leader(equation.row), leader); });
-    std::map<Index, Group> groups;  // by the root of the union-find set of their leaders in `sets`
+    // Each group holds the equations whose leaders are in one set of `sets`. Key: root of the set (element that stands
+    // for all of its elements).
+    std::map<Index, Group> groups;
     for (EquationRow& equation : rows) {
         Group& group = groups[sets.root(mobilities.leader(equation.row))];
         (equation.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);

@@ -30,19 +30,21 @@ struct StepEquations {
 };
 
 /// Includes joints, ties and rollers in W and q of a problem, so that a solver for contacts alone can solve it. The
-/// rows (scalar equations) of joints, welds, ball ties and rollers are eliminated: any contact impulses leave the
-/// velocities of these rows as they are after the step. C, E and G are blocks of the Delassus operator, which maps
-/// impulses to velocity changes: C couples contacts with eliminated rows, E eliminated rows with each other, G contacts
-/// with all rows. r* are the impulses of the contacts in the step, s* those of all rows. Then
+/// rows (scalar equations) of joints, welds, ball ties and rollers are eliminated: with any contact impulses, these
+/// rows keep the velocities that they have after the step. With the contact impulses r* and the impulses s* of all rows
+/// in the step,
 ///
 ///     W' = W - C E^-1 C^T,     q' = q + G s* + C E^-1 C^T r*.
 ///
-/// If r* solved the problem of the step, it also solves the new one. Rows of slides, of cables, and of motors, limits
-/// and passive forces of joint axes are not eliminated: they keep their impulses of the step. `contact`: for each
-/// contact of the problem, its row in `inputs`. `impulse`: r*, in the contact frames. Returns the numbers of the
-/// contacts that impulses can no longer move along their normals. The blocks of these contacts are set to zero, and q
-/// of the other contacts includes the effect of the impulses that these contacts had in the step. Returns nothing if no
-/// row acts on a contact.
+/// C, E and G are blocks of the Delassus operator, which maps impulses to velocity changes. C couples contacts with
+/// eliminated rows, E couples eliminated rows with each other, and G couples contacts with all rows. If r* solved the
+/// problem of the step, it also solves the new one. Rows of slides, of cables, and of motors, limits and passive forces
+/// of joint axes are not eliminated: they keep their impulses of the step.
+///
+/// `contact`: for each contact of the problem, its row in `inputs`. `impulse`: r*, in the contact frames. Returns the
+/// indices of the contacts that impulses can no longer move along their normals. The blocks of these contacts are set
+/// to zero, and q of the other contacts includes the effect of their impulses in the step. Returns nothing if no row
+/// acts on a contact.
 std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equations, const RegionInputs& inputs,
                                                       std::span<const Index> contact, std::span<const Vec3> impulse,
                                                       ContactProblem& problem);

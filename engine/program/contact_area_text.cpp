@@ -14,8 +14,8 @@ namespace {
 constexpr Real resolves_stress = 1;
 // Smallest number n of edges per radius of a contact area for which the duration of impacts is accepted. On a coarse
 // mesh an impact takes about 1.67 sqrt(n) times as long as by the theory of Hertz, because the stiffness of a single
-// node does not grow with the contact area. For n = 0.25 the factor is 1.67 sqrt(0.25) = 0.84; below it, impacts are
-// too short.
+// node does not grow with the contact area. For n = 0.25 it takes 0.84 times as long. For a smaller n, impacts are too
+// short.
 constexpr Real resolves_impacts = 0.25;
 constexpr Real impact_duration = 1.67;
 

@@ -18,8 +18,8 @@ namespace {
 constexpr Real most_sag = 2;
 constexpr Real least_density = 2, most_density = 25000;  // aerogels and osmium are just within [kg/m^3]
 constexpr Real most_modulus = 1.3e12;                    // diamond is just below [Pa]
-constexpr Real most_gravity = 5000;                      // 9810, which is 9.81 m/s^2 given in mm/s^2, is above [m/s^2]
-constexpr Real most_size_ratio = 999;                    // size of longest body over shortest; 1000 if one is in mm
+constexpr Real most_gravity = 5000;                      // below 9810, which is gravity in mm/s^2 by mistake [m/s^2]
+constexpr Real most_size_ratio = 999;                    // size of longest body over shortest; a body in mm gives 1000
 // If the center of a body is further from the origin than this multiple of the size of the body, a pin that rotates
 // about the origin is probably a mistake.
 constexpr Real most_pivot_distance = 1;

@@ -26,8 +26,8 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
-/// A warning is given if an overlap exceeds this fraction of the mean edge length, or if surfaces are closer than their
-/// contact distance by more than this.
+/// A warning is given if surfaces overlap by more than this fraction of the mean edge length, or if the distance of
+/// surfaces is less than their contact distance by more than this fraction of the mean edge length.
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {

@@ -33,7 +33,7 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
 
 /// Sorts all tetrahedra by the step that they allow, smallest first. Tetrahedra whose steps exceed the smallest one by
 /// less than 10 % are sorted by altitude instead: a badly shaped tetrahedron also shortens the steps of its neighbours,
-/// because they share nodal masses. Only its small altitude distinguishes it from them.
+/// because they share nodal masses. Only by its small altitude can it be told from these neighbours.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
     const Real least = about * *std::min_element(step.begin(), step.end());

@@ -11,10 +11,10 @@ namespace skerry {
 
 namespace {
 
-// A part is reported if it is stiffer in bending than the material by at least this factor. With smoothed elements in
-// cubic cells the factor is 1.08 to 1.17 for two layers of cells, and 1.3 to 1.5 for one layer.
+// A thin part is reported if its mesh is at least this many times as stiff in bending as the exact elastic part. With
+// smoothed elements in cubic cells the factor is 1.08 to 1.17 for two layers of cells, and 1.3 to 1.5 for one layer.
 constexpr Real reported_stiffness = 1.25;
-// With cells of the recommended size, the bending stiffness exceeds that of the material by this fraction.
+// Fraction by which the bending stiffness exceeds the exact one if the cells have the recommended size.
 constexpr Real accepted_excess = 0.1;
 
 /// Elements of a body: tetrahedra by material, and the constants of these materials.

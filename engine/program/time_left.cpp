@@ -7,8 +7,9 @@
 namespace skerry {
 
 void TimeLeft::reach(double wall, double time) {
-    // Least factor by which the wall time grows over two intervals between stored samples; samples in between are
-    // dropped. The smaller the factor, the more accurately estimate() finds the sample at half of the wall time.
+    // Samples are dropped so that the wall time of each stored sample, except for the last one, is at least this many
+    // times that of the sample two places before it. The smaller the factor, the more accurately estimate() finds the
+    // sample at half of the wall time.
     constexpr double growth = 1.05;
     const std::size_t count = samples_.size();
     if (count > 1 && wall < growth * samples_[count - 2].wall)

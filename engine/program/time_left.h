@@ -28,8 +28,8 @@ private:
     double estimate_from(const Sample& before) const;
 
     double end_;
-    // the last entry is the present state; in the others the wall time grows by 5 % or more over two intervals, so that
-    // a long run needs few entries
+    // The last entry is the present state. Among the other entries, the wall time of each is at least 1.05 times that
+    // of the entry two places before it, so that a long run needs few entries.
     std::vector<Sample> samples_;
 };
 

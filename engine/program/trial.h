@@ -13,8 +13,8 @@ struct SceneCost {
     Real simulated = 0;     // time that the trial simulated [s]
     bool complete = false;  // true if the trial simulated the whole run
     Real overlap = 0;       // deepest overlap at the start [m]
-    // Part of the contact distance that is missing between surfaces at the start: the largest depth by which they are
-    // closer than their contact distance, minus the largest overlap [m].
+    // Largest depth by which surfaces are closer than their contact distance at the start, minus the largest overlap of
+    // surfaces [m]. The difference is the part of the contact distance that is missing.
     Real into_shell = 0;
     Index contacts = 0;  // number of contacts at the start
     std::string failure{}, turning{};

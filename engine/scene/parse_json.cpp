@@ -75,7 +75,8 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            // a list or object that is open inside of this list is already its last item, with the index size() - 1
+            // A list or object that is still being read is already an item of the list around it: the last one, with
+            // the index size() - 1. If none is open inside of this list, the next item will have the index size().
             const std::size_t begun = i + 1 < open_.size() ? 1 : 0;
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);

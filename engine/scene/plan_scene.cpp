@@ -218,7 +218,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
         // The engine does not choose the dynamics of bodies with pinned nodes: World::attach() makes such a body
-        // explicit. The plan then has explicit dynamics too, and stiff_note() can propose implicit dynamics.
+        // explicit. The plan also says explicit, because stiff_note() proposes implicit dynamics only for bodies whose
+        // planned dynamics are not automatic.
         body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !planned.pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;

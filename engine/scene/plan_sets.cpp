@@ -63,9 +63,9 @@ std::vector<std::array<Index, 3>> surface_faces(const Mesh& mesh) {
     return surface;
 }
 
-/// First part of plan_set(): the union of the sets that an entry names, or all nodes if it names none. With a label:
-/// only the tetrahedra with this label, within this union or in the whole mesh. plan_set() then applies the other
-/// conditions.
+/// First part of plan_set(), which then applies the other conditions. Returns the union of the sets that an entry
+/// names, or all nodes if it names none. If the entry has a label, returns only the tetrahedra with this label: those
+/// within the union, or within the whole mesh if the entry names no sets.
 MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set;
     for (const std::string& name : entry.set.items) {

@@ -96,7 +96,7 @@ std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
     std::vector<PlannedRun> plan{{{}, 1, {}, StudyStage::start}, {{.draw = 1}, 1, {}, StudyStage::start}};
     add_element_runs(scene, plan);
     plan.push_back({{.step = 0.5}, 2, {}});
-    constexpr double solving = 1.5;  // cost: the solver, half of the CPU time, needs twice as many sweeps
+    constexpr double solving = 1.5;  // cost: the solver takes half of the CPU time; its sweeps double
     plan.push_back({{.tolerance = 0.01}, solving, {}});
     add_level_run(scene, -1, StudyStage::basic, plan);
     if (scene.levels.coarsest <= -2) add_level_run(scene, -2, StudyStage::basic, plan);

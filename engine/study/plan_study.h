@@ -55,8 +55,8 @@ void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, s
 
 /// Predicted wall time of runs with these costs, in units of the cost.
 double wall_time(std::vector<double> costs, int threads);
-/// True if a run is made alone with all threads. This is so if it would take longer on one thread than all remaining
-/// work, divided equally among the threads. `total`: sum of the costs of all runs that are not made yet, with this one.
+/// True if a run is made alone with all threads: it would take longer on one thread than all remaining runs, divided
+/// equally among the threads. `total`: sum of the costs of all runs that are not made yet, with this one.
 bool gets_all_threads(double cost, double total, int threads);
 /// Leaves out runs that do not fit into the budget. The runs are taken in order. A run is left out if the chosen runs,
 /// together with it, would take longer than `budget` times the duration of the first run. Runs with an index below

@@ -45,8 +45,7 @@ void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count
 }
 
 /// Hashes the given rows of every column of a table that has the role `state`. Rows beyond the end of a column are left
-/// out. If the size of the range is negative, all rows from its begin are hashed, because the size wraps to a large
-/// unsigned number.
+/// out. A range of negative size stands for all rows from its begin, because the size wraps to a large unsigned number.
 void add_state(Hash& hash, AnyTable table, Range rows) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::state) continue;

@@ -62,8 +62,8 @@ private:
             if (corner < 0 || corner >= static_cast<Index>(nodes))
                 refuse(object, "triangles", "node " + std::to_string(corner),
                        "the index of a node of the mesh, 0 to " + std::to_string(static_cast<Index>(nodes) - 1));
-        // A triangle with two equal nodes is refused, because the engine uses such triangles to represent the cores of
-        // round bodies (Model::append_outline).
+        // A triangle with two equal nodes is refused, because the engine uses such triangles for a special purpose
+        // (Model::append_outline): they represent the core of a round body, which is its centre or axis.
         const auto [a, b, c] = triangle;
         if (a == b || b == c || c == a)
             refuse(object, "triangles",

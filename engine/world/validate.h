@@ -24,8 +24,8 @@ void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);
 void validate(const Sphere& sphere, const BodySettings& body);
 void validate(const Capsule& capsule, const BodySettings& body);
 void validate(const Cylinder& cylinder, const BodySettings& body);
-/// Checks a body after its rows were appended. Its stable step must be above 0. It must also be finite, unless the body
-/// is rigid or implicit.
+/// Checks a body after its rows were appended. Its stable step must be above 0. It must also be finite, except for a
+/// rigid or implicit body, whose elements need not limit the step.
 void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);

@@ -9,8 +9,9 @@ namespace skerry {
 
 namespace {
 
-/// Checks the terms of Ogden's law. If no share is negative, each term is a convex function of the principal
-/// logarithmic strains (Ogden 1972).
+/// Checks the terms of Ogden's law: shares of the shear modulus must not be negative and must sum to 1, and exponents
+/// must lie in a limited range. If no share is negative, each term is a convex function of the principal logarithmic
+/// strains (Ogden 1972).
 void require_terms(const MaterialSettings& material, const std::string& object) {
     constexpr Real least_exponent = 0.1, largest_exponent = 100, rounding = 1e-9;
     Real sum = 0;
@@ -76,8 +77,9 @@ void validate(const MaterialSettings& material) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
-    // Young's modulus and density may be any positive numbers, but some pairs give a stable step of 0, or one too short
-    // to advance the time. Without this check the error would appear only when a body is added or in the first step.
+    // Young's modulus and density may be any positive numbers, if the wave speed that they give is not above the speed
+    // of light. Other values may give a stable step of 0, or one too short to advance the time. Without this check that
+    // error would appear only when a body is added or in the first step.
     constexpr Real speed_of_light = 299792458;  // m/s
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))

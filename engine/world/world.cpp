@@ -93,7 +93,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // clusters refer to rows of NodeTable, which erase_gone_rows moves
+        model.clusters.clear();  // a cluster is a set of rows of NodeTable, which erase_gone_rows moves
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -162,7 +162,7 @@ World copy_of_settled(const WorldState& source, const LoadSettings& load_setting
     use(load_settings, settings);
     World copy = tuned_world(settings, source.model.tuning);
     WorldState& to = WorldAccess::state_of(copy);
-    settings.backend = to.model.settings.backend;  // the copy has replaced `automatic` by the backend in use
+    settings.backend = to.model.settings.backend;  // tuned_world() has replaced `automatic` by the backend in use
     to.model = source.model;
     to.model.settings = settings;
     to.clock = source.clock;
@@ -237,8 +237,9 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     if (core.nodes > 0) {
         fresh.dynamics = BodyDynamics::rigid;
     } else if (body.dynamics == BodyDynamics::automatic) {
-        // settle() erases removed bodies, which must not limit the step that choose_dynamics estimates. It is called
-        // only if there are any, because it also discards Model::known_elements, which save time for equal meshes.
+        // Removed bodies must not limit the step that choose_dynamics estimates, so settle() erases them. Without
+        // removed bodies settle() is not called, because it also discards Model::known_elements, which save time for
+        // equal meshes.
         if (!state.edits.removed_bodies.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
@@ -330,8 +331,9 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 namespace {
 
-/// Must be called for an object that is removed. If it belongs to the pair with the deepest overlap of held surfaces,
-/// HeldDepth::pair is reset, because a new object may get the same slot. The stored depth remains.
+/// Must be called for an object that is removed. HeldDepth describes the deepest overlap of surfaces whose motion is
+/// prescribed. If the removed object belongs to this pair of surfaces, HeldDepth::pair is reset: a new object may get
+/// the same slot, and would be reported by mistake. The stored depth remains.
 void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
     const PairSlots pair = slots_of_pair(held.pair);
     if (is_collider ? pair.is_collider && pair.second == slot

@@ -81,8 +81,8 @@ struct WorldAccess {
     }
 };
 
-/// Returns a copy of a world without pending changes. Only reads `source`, so several threads may copy one world at the
-/// same time. `load_settings`: backend and number of threads of the copy.
+/// Returns a copy of a world. `source`: must have no pending changes (WorldState::settle); it is only read, so several
+/// threads may copy one world at the same time. `load_settings`: backend and number of threads of the copy.
 World copy_of_settled(const WorldState& source, const LoadSettings& load_settings);
 
 /// Returns the name of the column or value at an address inside a WorldState, such as "nodes.velocity". The name is

@@ -149,8 +149,8 @@ public:
 
 private:
     static constexpr int exchange_tag = 1, gather_tag = 2;
-    // Greatest length of a piece of a message [bytes]. The last piece of a message is the first one that is shorter; it
-    // may be empty.
+    // A message is sent in pieces of this length [bytes]. The first shorter piece, which may be empty, ends the
+    // message.
     static constexpr std::size_t longest_piece = std::size_t{1} << 24;
 
     /// Converts a number of bytes to int, the type in which MPI counts. Throws std::runtime_error if it does not fit.

@@ -53,8 +53,9 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            // `distance` is a lower bound for all points of the edge, so no point can touch in this step. scale.radii:
-            // the edge may be the axis of a capsule, whose surface is nearer than the axis by the radius.
+            // `distance` is a lower bound for all points of the edge, and no node is fast enough to close it in this
+            // step. So the contact points are not computed. The radius is subtracted, because the edge may be the axis
+            // of a capsule, whose surface is nearer than the axis.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }
@@ -81,8 +82,8 @@ private:
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        // Depth behind the face of contact.point.at [m]: a corner, a rim point, or the centre of a sphere or of an end
-        // of a capsule.
+        // Depth of the point contact.point.at behind the face [m]. The point is a corner, a rim point, or the centre of
+        // a sphere or of an end of a capsule. contact.distance is smaller than its height above the face by the radius.
         const Real depth = -(contact.distance + contact.point.radius);
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;

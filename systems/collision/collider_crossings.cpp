@@ -15,9 +15,9 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// Tests one candidate for a crossing in this step. `least`: relative motion of body and collider up to which the
-    /// feature cannot touch the collider, except at its nodes, which are candidates of their own [m]. Returns true if a
-    /// full test was needed.
+    /// Tests one candidate for a crossing in this step. `least`: smallest relative motion of body and collider with
+    /// which the feature can touch the collider [m]. Contacts at the nodes of the feature do not count, because nodes
+    /// are candidates of their own. Returns true if a full test was needed.
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
@@ -64,13 +64,13 @@ private:
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,
              const Touch& touch) {
-        // Contact point and normal on the collider, rotated and moved back with it to its pose at the start of the
-        // step.
+        // Normal and contact point of the collider, in the world. Both are fixed to the collider, and its pose at the
+        // start of the step is used.
         const Vec3 normal = pose_.rotation * touch.normal, point = to_world(pose_, touch.point);
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        // The point of the feature that makes the contact: its height above the contact point at the start of the step,
-        // along the normal [m].
+        // Height of the point of the feature that touches, above the contact point of the collider, measured along the
+        // normal at the start of the step [m].
         Real along = 0;
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;

@@ -62,9 +62,9 @@ private:
         asleep_until[c] = travel_base + (distance > 0 ? rim_node_fraction : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
-    /// True if `bound`, a lower bound of the distance, shows that candidate c has no contact in this step. Then
-    /// asleep_until is stored. Otherwise the caller computes the contact points, and stores asleep_until with the
-    /// sharper bound that follows from these points.
+    /// Tests whether `bound`, a lower bound of the distance, already shows that candidate c has no contact in this
+    /// step. If so, stores asleep_until with this bound and returns true. Otherwise returns false: the caller must
+    /// compute the contact points, and store asleep_until with the sharper bound that follows from them.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !store_distance(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
@@ -109,10 +109,10 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // The faces at a nearly flat edge have almost the same normal. Such an edge makes a contact only with an
-            // end of the cylinder, or where it crosses the curved side and is perpendicular to the contact normal.
-            // Elsewhere the faces support the cylinder. A contact at the edge would act as a bump, for example if the
-            // edge is parallel to a rolling cylinder and ahead of it.
+            // An edge is nearly flat if its faces have almost the same normal. The faces then support the cylinder, and
+            // a contact at the edge would act as a bump, for example if the edge is parallel to a rolling cylinder and
+            // ahead of it. So a nearly flat edge makes a contact in two cases only: with an end of the cylinder, or
+            // where it crosses the curved side and is perpendicular to the contact normal.
             const CylinderRegion region = nearest_region(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =

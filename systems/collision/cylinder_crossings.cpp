@@ -17,10 +17,11 @@ namespace skerry {
 
 namespace {
 
-// Lowest values of the `number` (feature_of_touch) of a crossing, above the numbers that find_cylinder_contacts uses. A
-// triangle has eight numbers: three for its corners, three for its edges and two for the rims of the cylinder. Another
-// shape has one number for each contact point at the end of the step, from crossing_of_shape on, and the number
-// crossing_during_step for the first contact during the step.
+// Lowest values of the `number` (feature_of_touch) of a crossing, above the numbers that find_cylinder_contacts uses.
+// crossing_of_triangle: first of eight numbers for a triangle, which are three for its corners, three for its edges and
+// two for the rims of the cylinder. crossing_of_shape: number of the first contact point with another shape at the end
+// of the step; one number for each further point follows. crossing_during_step: number of the first contact with
+// another shape during the step.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::capacity,
                 crossing_during_step = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::capacity <= touches_of_shape);
@@ -119,9 +120,10 @@ private:
         return true;
     }
 
-    /// If the shapes overlap at any contact point at the end of the step, adds all contact points whose distance is
-    /// below the shell distance at this time, and returns true. Contacts at the overlapping points alone would let the
-    /// cylinder rotate and overlap at the other points in the next attempt.
+    /// If the shapes overlap at any contact point at the end of the step, adds contacts and returns true. Added are all
+    /// contact points whose distance at the end of the step is below the shell distance (PairScale::shell). With
+    /// contacts at the overlapping points only, the cylinder would rotate about these and overlap at the other points
+    /// in the next attempt.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -250,9 +252,10 @@ private:
     /// [m]. `along` and `end_distance`: distances between the surfaces at the contact point at the start and at the end
     /// of the step [m].
     ///
-    /// A contact keeps a gap open for straight paths of its point, but a rotation of the cylinder may still close it.
-    /// So if an earlier attempt at the step already had this contact and `end_distance` is negative, the distance of
-    /// the contact is reduced by this overlap.
+    /// The contact prevents the crossing only if its point moves on a straight path. If the cylinder rotates, the
+    /// surfaces may still overlap at the end of the step (end_distance < 0), although an earlier attempt at the step
+    /// already had this contact. The distance of the contact is then reduced by this overlap, so that the contact
+    /// pushes further.
     void add_crossing(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm,
                       const Vec3& normal, Real along, const Vec3& surface_velocity, Real end_distance = 0) {
         const auto row_at = [&](Real distance) {
@@ -261,9 +264,9 @@ private:
                                kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
                                stencil, {point, normal, distance, scale.shell, surface_velocity}, motion.h);
         };
-        // `along` is measured at the start of the step, but along the normal at the time of contact. If the shapes have
-        // rotated by more than a right angle in between, `along` can be negative although nothing overlapped at the
-        // start.
+        // `along` compares positions at the start of the step, but measures along the normal at the time of contact. If
+        // the shapes have rotated by more than a right angle in between, `along` can be negative although nothing
+        // overlapped at the start.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (end_distance < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -273,8 +276,8 @@ private:
         found.push_back(row);
     }
 
-    /// Threshold for the test of a feature. `radius`: radius of the sphere or capsule whose core is the feature, else
-    /// 0. The feature counts as crossing only if the gap becomes smaller than a tenth of the shell distance
+    /// Distances at which the test counts a feature as crossing. `radius`: radius of the sphere or capsule whose core
+    /// (centre or axis) is the feature, else 0. With a shell distance, the gap must become smaller than a tenth of it
     /// (contact_slack). A feature that a contact stops at the shell distance therefore does not count. Without a shell
     /// distance, first_touch() uses a tenth of the distance at the start of the step.
     ContactThreshold threshold(Real radius) const {

@@ -93,8 +93,9 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     if (pairs.kind[p] == PairKind::collider) {
         pairs.travel[p] = inputs.body.travel[a] + inputs.body.frame[a].path + inputs.collider.travel[b];
         pairs.travel_bound[p] = memory.body_travel_bound[a] + memory.collider_travel_bound[b];
-        // The motion of the collider in this step is computed again, although it is also part of travel_bound - travel.
-        // The travel of a rotating shape grows without limit, so this difference would have a large rounding error.
+        // The difference travel_bound - travel contains the motion of the collider in this step, but is not used here.
+        // It would have a large rounding error, because the travel of a rotating shape grows without limit. So the
+        // motion is computed again.
         pairs.closing[p] = memory.body_reach[a] + collider_reach(inputs, b, memory.collider_extent[b], h);
         return;
     }
@@ -303,8 +304,8 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
 }
 
 /// Requests that measure_displacement resets the displacements of the bodies in expired pairs to zero. A list is valid
-/// for the travel m - 2 d (contact_reach.h), with the margin m and the displacement d at the time of the search. Bodies
-/// with a small d are left out, because a reset would hardly prolong the validity of their lists.
+/// for the travel m - 2 d (contact_reach.h), with the margin m and the displacement d at the time of the search. With d
+/// = 0, new lists are thus valid for longer. Bodies with a small d are left out, because they would gain little.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real rebase_fraction = 0.25;

@@ -220,9 +220,9 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion self_motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    // If PairTable::travel_bound has reached valid_until, find_candidates kept the list only because the spare
-    // distances of its pairs of leaves exceed the expected motion (is_valid, self_motion.h). The spare distances then
-    // suffice if the nodes move as expected.
+    // If PairTable::travel_bound has reached valid_until, find_candidates has kept the list for another reason
+    // (is_valid): the spare distances of its pairs of leaves (self_motion.h) exceed the motion that follows from the
+    // present velocities. The spare distances then suffice if the nodes move as these velocities predict.
     const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(self_motion, motion);
     return !within_reach && !holds_for_motion(self_motion, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }

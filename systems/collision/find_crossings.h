@@ -13,11 +13,13 @@ namespace skerry {
 /// further than their candidate lists are valid for. Runs in parallel over the blocks of find_contacts.
 ///
 /// Tests only pairs with a positive contact distance, and pairs of surfaces only if these are known to be apart.
-/// Without a contact distance, surfaces may touch, and a touch cannot be distinguished from a crossing. Skips all
-/// candidates of a pair in one block if the relative motion of the pair in this step is at most half of the least
-/// distance of the candidates of this block. Skips a single candidate if the motion is at most half of its distance. A
-/// slow scene therefore takes one comparison per pair and block. BodyTable::frame_speed must have been measured for the
-/// motion h (velocity_next + push_out).
+/// Without a contact distance, surfaces may touch, and a touch cannot be distinguished from a crossing.
+///
+/// Slow candidates are skipped. The relative motion of a pair in this step is compared with the least distance of all
+/// candidates of the pair in one block. If the motion is at most half of this distance, all of these candidates are
+/// skipped. Else a single candidate is skipped if the motion is at most half of its own distance. A slow scene thus
+/// takes one comparison per pair and block. BodyTable::frame_speed must have been measured for the motion h
+/// (velocity_next + push_out).
 ///
 /// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
 /// features meet. If a pair moves further than its candidate list is valid for, and extends_lists is set, no features

@@ -16,9 +16,9 @@ namespace skerry {
 
 /// Tests the candidates in `range` of the list of pair p, a body and an analytic collider. If use_budgets is set,
 /// candidates that cannot touch in this step are skipped. Returns a lower bound of the distances of the tested features
-/// from the collider [m]. An edge or face in a flat region of the collider (flat_region) can touch only at its nodes,
-/// which are candidates of their own. Its distance counts as at least the distance that it can move within this region
-/// (flat_reach).
+/// from the collider [m]. Exception: an edge or face in a flat region of the collider (flat_region) can touch only at
+/// its nodes, which are candidates of their own. In place of its distance, the distance that it can move within this
+/// region (flat_reach) is used if it is larger.
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 

@@ -89,10 +89,13 @@ private:
         });
     }
 
-    /// True if `candidate`, whose triangle is the core (axis or centre) of a round body, makes a contact. Several
-    /// candidates can describe one contact, and only one of them makes it. A vertex of a mesh makes a contact only
-    /// between the ends of the axis, because each end has its own candidates with the faces of the mesh. If the ends of
-    /// two round bodies are nearest to each other, they have two candidates, and one of these makes the contact.
+    /// True if `candidate`, a point and the core (axis or centre) of a round body, makes a contact. Several candidates
+    /// can describe one contact, and only one of them makes it.
+    ///
+    /// A point on a mesh makes a contact only if it is nearest to a point between the ends of the axis. At an end, the
+    /// candidate of this end and a face of the mesh makes the contact. If the ends of two axes are nearest to each
+    /// other, each end is a candidate with the other axis; the end on the first body makes the contact. The centre of a
+    /// sphere is the only candidate with an axis, so it always makes the contact.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;
@@ -105,10 +108,10 @@ private:
                                             inputs.position[b] - inputs.position[a], scale);
     }
 
-    /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `target`
-    /// on the surface of the other body. The round body then touches `target` from behind, because elements of the
-    /// other body are inverted there. This test replaces is_truly_behind for round bodies, which touch many faces at
-    /// once: a nearer face does not exclude a contact with a further one.
+    /// `target`: point on the surface of the other body, behind which the core (axis or centre) of a round body lies.
+    /// True if no face of the other body lies between the core and `target`. The elements at `target` are then
+    /// inverted, and the round body touches `target` from behind. This test replaces is_truly_behind for round bodies,
+    /// which touch many faces at once: a nearer face does not exclude a contact with a further one.
     bool is_in_sight(Index c, Index core, const Vec3& target) const {
         const Vec3& start = inputs.position[core];
         const Vec3 end = start + (1 - sight_slack) * (target - start);

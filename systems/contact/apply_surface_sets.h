@@ -16,10 +16,10 @@ struct FrictionShape {
     Real across = 1;
 };
 
-/// Geometric mean of the friction tensors A, B of two surfaces. Each tensor has the eigenvalues 1 and `across`. For 2x2
-/// matrices the mean is sqrt(a b) G / sqrt(det G) with G = A/a + B/b, a^2 = det A, b^2 = det B (Ando, Li and Mathias
-/// 2004). `scale`: larger eigenvalue of the mean. The friction coefficients along `axis` are those of isotropic
-/// friction times `scale`.
+/// Friction between two surfaces whose friction depends on the direction. Its tensor is the geometric mean of the
+/// friction tensors A, B of the surfaces, each with the eigenvalues 1 and `across`. For 2x2 matrices, with a = sqrt(det
+/// A), b = sqrt(det B) and G = A/a + B/b, the mean is sqrt(a b) G / sqrt(det G) (Ando, Li and Mathias 2004). `scale`:
+/// larger eigenvalue of the mean. The friction coefficients along `axis` are those of isotropic friction times `scale`.
 struct MeanShape {
     FrictionAxis axis;
     Real scale = 1;

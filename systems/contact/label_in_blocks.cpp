@@ -8,9 +8,9 @@
 namespace skerry {
 namespace {
 
-// `min_shift`: the smallest block has 2^min_shift contacts. They take a few microseconds, about as long as a worker
-// takes to start. `max_blocks`: upper limit of the number of blocks. It is small, because BlockTable has an entry for
-// each pair of blocks.
+// `min_shift`: the smallest block has 2^min_shift contacts. Their processing takes a few microseconds, about as long as
+// the start of a worker. `max_blocks`: upper limit of the number of blocks. It is small, because BlockTable has an
+// entry for each pair of blocks.
 constexpr std::size_t min_shift = 7, max_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.
@@ -44,9 +44,10 @@ public:
     /// for later blocks are unused, because a region begins at its first contact.
     Index* row(std::size_t block) { return entry_.data() + block * blocks_; }
 
-    /// Replaces the counts in the table by indices in a list of all contacts. The list is sorted by the block in which
-    /// the region of a contact begins, then by contact. Returns for each block the index in the list of the first
-    /// contact whose region begins in the block, then the length of the list.
+    /// Replaces the count in each entry (a, b) by an index in a list of all contacts: the index of the first contact of
+    /// block a whose region begins in block b. The list is sorted by the block in which the region of a contact begins,
+    /// then by contact. Returns an array with one entry for each block, the index in the list of the first contact
+    /// whose region begins in this block. The last entry is the length of the list.
     std::array<Index, max_blocks + 1> cut() {
         std::array<Index, max_blocks + 1> begin;
         Index sum = 0;

@@ -17,8 +17,8 @@ namespace skerry {
 struct BlockLabels {
     SharedUnionFind sets;
     Column<Index> by_block;  // contacts, sorted by the block in which the region of a contact begins
-    // Entry for each pair of blocks (a, b): index in `by_block` for the next contact of block a whose region begins in
-    // block b.
+    // Entry for each pair of blocks (a, b): index in `by_block` at which the next contact of block a whose region
+    // begins in block b is to be stored.
     Column<Index> entry;
 };
 

@@ -110,8 +110,8 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
                       std::span<Vec3> impulse) {
     if (last.point.empty() || now.key.empty()) return false;
     SKERRY_CHECK(last.point.size() == last.key.size() && impulse.size() == now.key.size());
-    // Lower limit of the cosine between the normals of the vanished contact and of the contact that takes over its
-    // impulse.
+    // Lower limit of the cosine of the angle between the normals of the vanished contact and of the contact that takes
+    // over its impulse.
     constexpr Real least_cosine = 0.9;
     const Real scale = kick / last.step[0];
     const auto pass_on = [&](std::size_t vanished, Rows rows, Real reach) {

@@ -60,8 +60,8 @@ struct ContactsDone {
     std::span<const Vec3> impulse;     // [N s]
     std::span<const Vec3> point = {};  // contact points; empty if no body is rigid or implicit [m]
 
-    /// `frames_on_ranks`: true if any rank (process of a parallel run) has a rigid or implicit body. All ranks then
-    /// store the points, because their contacts may move to other ranks.
+    /// `frames_on_ranks`: true if any rank (process of a parallel run) has a body with a frame, that is, a rigid or
+    /// implicit body. All ranks then store the points, because their contacts may move to other ranks.
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid,
                              const bool& frames_on_ranks) {
         return {

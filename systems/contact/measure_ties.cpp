@@ -20,8 +20,8 @@ Vec3 twice_mean(const TieWorkInputs& motion, Index node, const Vec3& point) {
     return sum + (motion.spins.before(r) + motion.spins.after(r)).cross(point - motion.position[n]);
 }
 
-/// True if all bodies of a tie are implicit. The impulses of the tie then act for the whole step, otherwise for the
-/// force interval.
+/// True if all bodies of a tie are implicit. The impulses of the tie then act for the whole step. Otherwise they act
+/// for the force interval, the time for which forces act on explicit and rigid bodies.
 bool acts_for_whole_step(const TieTable& ties, std::span<const Range> body_implicit, std::size_t t) {
     const auto implicit = [&](Index body) {
         return body == no_index || body_implicit[static_cast<std::size_t>(body)].size() > 0;

@@ -20,8 +20,9 @@
 
 namespace skerry {
 
-/// Contact points and distances of ContactTable. Only cylinders need them, because the surface points of a cylinder do
-/// not follow from the normal alone.
+/// Contact points and distances of ContactTable. Only cylinders need them. On a sphere or capsule the contact point is
+/// one radius away from the core (centre or axis), on the line of the normal. On a cylinder the normal alone does not
+/// determine it.
 struct TouchPoints {
     std::span<const Vec3> point{};
     std::span<const Real> distance{};
@@ -121,10 +122,10 @@ struct RigidSpins {
     Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
     /// Spin after the kick of this step (moments of gravity and loads), before the contacts act [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
-    /// Acceleration, due to the rotation of the body after the kick, of a point that is fixed to the body [m/s^2].
-    /// `arm`: vector from the centre of mass to the point [m]. `held`: an attachment prescribes the motion of the body,
-    /// so its spin is constant in this step. The spin of any other body changes because its angular momentum is
-    /// constant.
+    /// Acceleration of a point that is fixed to the body, due to the rotation of the body with the spin kicked()
+    /// [m/s^2]. `arm`: vector from the centre of mass to the point [m]. `held`: true if an attachment prescribes the
+    /// motion of the body; its spin is then constant in this step. The spin of any other body changes even without
+    /// moments, because its angular momentum is constant while its inertia rotates with it.
     Vec3 acceleration(std::size_t r, const Vec3& arm, bool held) const {
         const Vec3 spin = kicked(r), centripetal = spin.cross(spin.cross(arm));
         if (held) return centripetal;
@@ -158,8 +159,9 @@ struct SolvedCables {
     }
 };
 
-/// Connections between nodes, for the search for contact regions: groups of nodes, joints and cables. No node is in a
-/// rigid body and in a cluster at the same time.
+/// Connections between nodes, for the search for contact regions: groups of nodes, joints and cables. A group is a
+/// rigid or implicit body, or a cluster (nodes with a common inertia matrix). No node is in a rigid body and in a
+/// cluster at the same time.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none
     RigidNodes rigid{};
@@ -172,8 +174,8 @@ struct NodeGroups {
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints,
                            const CableBlockTable& cables, const Column<std::uint8_t>& elsewhere) {
-        // Only these columns are declared as read. The matrices of the clusters are not read here, so other tasks may
-        // write them at the same time.
+        // binder.value() declares only these columns as read. The matrices of the clusters are not read here, so other
+        // tasks may write them at the same time.
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
@@ -205,8 +207,9 @@ struct NodeGroups {
             });
         }
     }
-    /// Sets contact_region to no_index for the rows that another rank (process) solves. Such rows belong to ties, or to
-    /// contacts of held nodes: contacts of moving nodes have already been sent to that rank.
+    /// Sets contact_region to no_index for those rows of ContactTable that another rank (process) solves. These rows
+    /// are ties and contacts of held nodes. Contacts of moving nodes are not among them, because they have already been
+    /// sent to that rank.
     void leave_out_other_ranks(std::span<const Stencil> stencil, std::span<Index> contact_region) const {
         if (elsewhere.empty()) return;
         for (std::size_t i = 0; i < stencil.size(); ++i)

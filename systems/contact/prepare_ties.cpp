@@ -56,9 +56,9 @@ struct FrameMotion {
     Vec3 acceleration = Vec3::Zero();  // due to the rotation of the frame [m/s^2]
 };
 
-/// Motion of `point` with the frame in row `frame` of RigidBodyTable. `node`: row of NodeTable of the node at the
-/// point. Its velocity relative to the frame gives the Coriolis acceleration. no_index: the point is fixed to the
-/// frame.
+/// Velocity at `point` of the frame in row `frame` of RigidBodyTable, and acceleration of the point due to the rotation
+/// of the frame. `node`: row of NodeTable of the node at the point, or no_index if the point is fixed to the frame. The
+/// velocity of the node relative to the frame adds the Coriolis acceleration.
 FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, Index node) {
     FrameMotion at;
     if (frame == no_index) return at;
@@ -197,9 +197,9 @@ ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, con
             .collider = tie.collider[t]};
 }
 
-/// Appends a block for the equation of the mean point of a tie, if impulses can move at least one of its nodes. The
-/// points of the block are stencils. Each combines up to four tied nodes; the last one consists of nodes of the other
-/// object.
+/// Appends a block (CableBlock) for the equation of the mean point of a tie, if impulses can move at least one of its
+/// nodes. The points of the block are stencils, that is, nodes with weights. The last point consists of nodes of the
+/// other object. The points before it consist of up to four tied nodes each, and their sum is the mean point.
 void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real scale, CableBlockTable& blocks) {
     const TieTable& tie = ties.tie;
     const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);
@@ -222,8 +222,8 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
         four.weight[count] = share;
         if (++count == 4) end_point();
     });
-    // A block has one impulse number per point. The impulse of a tie has three components, so at least three points are
-    // needed.
+    // A block stores one scalar impulse per point. The impulse of a tie has three components, so the block needs at
+    // least three points.
     while (count > 0 || static_cast<Index>(blocks.stencil.size()) < begin + 2) end_point();
     append(row.stencil(), -row.demanded());
     if (!moves) {

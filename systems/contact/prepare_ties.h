@@ -117,13 +117,15 @@ Mat3 triangle_axes(const std::array<Vec3, 3>& corner);
 /// Times and solver settings of a step. `h`: step length [s]. `kick`: time for which forces act [s].
 struct TieStep {
     Real h = 0, kick = 0;
-    Real recovery_speed = 0;  // upper limit of the speed at which position errors are corrected [m/s]
+    // upper limit of the speed at which the position errors of bodies without spin are corrected [m/s]
+    Real recovery_speed = 0;
     WarmStart warm_start = WarmStart::on;
 };
 
 /// Prepares the ties that neither rest nor are broken: appends a row to the contacts for each unbroken node of a weld
 /// or slide, and a block to `blocks` for each tie of the kind `ball`. The equations require that the position error is
-/// zero at the end of the step, or decreases at recovery_speed. Returns false if there is no tie (skipped).
+/// zero at the end of the step. An error too large for this decreases at a limited speed: recovery_speed plus the
+/// speeds of the tied points due to the spins of their bodies. Returns false if there is no tie (skipped).
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
                   CableBlockTable& blocks);
 

@@ -17,9 +17,9 @@ struct SeparationMemory {
     BlockLabels labels;
 };
 
-/// Minimum number of contacts and of workers for separation in blocks. Separation in blocks needs 1.3 to 1.5 times the
-/// work of sequential separation, and five parallel phases. For 1,024 contacts it takes 65 us of work, which all
-/// workers share; sequential separation takes 50 us.
+/// Minimum number of contacts and of workers for separation in blocks; below it, regions are separated sequentially.
+/// Separation in blocks needs 1.3 to 1.5 times the work of sequential separation, and five parallel phases. For 1,024
+/// contacts it takes 65 us of work, which all workers share; sequential separation takes 50 us of one worker.
 inline constexpr std::size_t least_contacts_in_blocks = 1024;
 inline constexpr int least_workers_for_blocks = 4;
 

@@ -104,9 +104,9 @@ struct CavityOutputs {
 };
 
 /// Adds the forces of the pressure in all cavities to the applied forces of nodes. Each corner of a face receives a
-/// third of pressure times area, in the direction into the body. `now`: time of the positions [s]. A prescribed
-/// pressure is averaged over the time from `now - lag` to `now - lag + kick`, in which the forces act. The volume of a
-/// liquid at ambient pressure is its prescribed value at time `now`. Returns false if there is no cavity.
+/// third of pressure times area, in the direction into the body. `now`: time of the positions [s]. The forces act for
+/// the time `kick`, which begins `lag` before `now` [s]. A prescribed pressure acts with its mean over this time. The
+/// volume of a liquid at ambient pressure is its prescribed value at time `now`. Returns false if there is no cavity.
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
                        const CavityOutputs& out);
 
@@ -145,10 +145,10 @@ struct CavityMemory {
     }
 };
 
-/// Updates the cavities after a step of length `h` that began at time `t`. Stores the pressures at time `t`. Adds the
-/// prescribed flow of gas to the masses in cavities, and lets gas flow through the pipes in table order. Updates the
-/// volumes of open cavities. `volume_now`: column of CavityTable. A prescribed outflow ends when a cavity contains no
-/// more gas. Returns false if there is no cavity.
+/// Updates the cavities after a step of length `h` that began at time `t` [s]. Stores the pressures at time `t`, which
+/// follow from the volumes `volume_now` (column of CavityTable) [m^3]. Adds the prescribed flow of gas to the masses in
+/// cavities, and lets gas flow through the pipes in table order. Updates the volumes of open cavities. A prescribed
+/// outflow ends when a cavity contains no more gas. Returns false if there is no cavity.
 bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                     std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out);
 

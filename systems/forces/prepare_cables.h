@@ -68,7 +68,8 @@ struct CableTimes {
     }
 };
 
-/// Lists the cables that act in this step, first those with known forces. Returns false if there is no cable.
+/// Lists the cables that act in this step. The cables with known forces (CableInputs::has_known_forces) come first; the
+/// region solver finds the forces of the others. Returns false if there is no cable.
 bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlockTable& blocks);
 
 /// Adds the forces of the cables with known forces to `applied_force`, by node [N]. `kick`: time for which the impulses
@@ -120,8 +121,8 @@ struct CableMemory {
 /// with a prescribed rate. Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
-/// Totals over the cables that the region solver has solved in a step. Cables on ghosts do not count, because the rank
-/// that owns the body counts them.
+/// Totals over the cables that the region solver has solved in a step. Cables on ghosts (copies of bodies that another
+/// rank owns) do not count, because the owner counts them.
 struct CableMeasures {
     Vec3 impulse = Vec3::Zero();  // impulse that cables transmit from colliders and from held nodes [N s]
     Real work = 0;                // work of the cables on the bodies [J]

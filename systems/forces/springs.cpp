@@ -44,8 +44,8 @@ struct Stretch {
     }
 };
 
-/// Inverse mass of an anchor along the direction `along` [1/kg]. The mass of each node or body is divided equally among
-/// the dampers that act on it. With this division, several dampers on one body are stable at any step length.
+/// Inverse mass of an anchor along the direction `along` [1/kg]. If several dampers act on a node or body, each gets an
+/// equal share of its mass. With these shares, the dampers together are stable at any step length.
 Real divided_inverse_mass(const SpringMasses& masses, const AnchorMass& own, const Mat3& response, Index body,
                           const Vec3& at, const Vec3& along) {
     if (own.dampers == 0) return own.divided;

@@ -146,9 +146,10 @@ struct SpringWorkInputs {
 /// Measures the work of springs. Formulas, `h`, `kick` and `lag`: see measure_work.h.
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
-/// Elastic energy of all springs at the present positions [J], plus a correction for velocities that are `lag` seconds
-/// older than positions. The correction is `lag` times the power of dF, the present elastic force minus the force of
-/// the last step. `t`: present time [s].
+/// Elastic energy of all springs at the present positions and the present time `t` [s], plus a correction [J].
+/// Velocities are `lag` seconds older than positions. So the energy balance adds `lag` times the power of all forces to
+/// the kinetic energy, with the spring forces of the last step. The correction replaces these by the present elastic
+/// forces: it is `lag` times the power of the difference, on the anchors and by changes of rest lengths.
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag);
 
 struct SpringMemory {

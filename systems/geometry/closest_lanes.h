@@ -20,8 +20,9 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T segment_distance_squared(const LaneVec3<T>& a0, const LaneVec3<T>& a1,
                                                          const LaneVec3<T>& b0, const LaneVec3<T>& b1) {
-    // Lower limit of the squared sine of the angle between the two lines. Below it, rounding errors would determine
-    // where the lines come nearest, so the search starts at s = 0 instead.
+    // Lower limit of the squared sine of the angle between the two lines. Below it the lines are nearly parallel, and
+    // rounding errors would determine where they come nearest. The position on the first segment is then taken as its
+    // start, s = 0, before it is clamped.
     constexpr Real noise_sine_squared = 1e-14;
     const T zero{}, one = zero + 1.0;
     const LaneVec3<T> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
@@ -64,8 +65,8 @@ template <class T>
 [[gnu::always_inline]] inline PointTriangleLanes<T> point_triangle_distance(const LaneVec3<T>& p, const LaneVec3<T>& a,
                                                                             const LaneVec3<T>& b,
                                                                             const LaneVec3<T>& c) {
-    // Lower limit of the squared ratio of smallest height to longest edge. Below it, only the edges of a triangle are
-    // used.
+    // Lower limit of the squared ratio of smallest height to longest edge. Below it, only the distances to the three
+    // edges count.
     constexpr Real min_height_squared = 1e-12;
     const T zero{};
     const LaneVec3<T> ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;

@@ -8,8 +8,9 @@
 namespace skerry {
 
 /// Rotates a body for the time `seconds` about one of its principal axes, with the angular velocity own_momentum[axis]
-/// / moments[axis]. `rotation`: principal frame to world. `own_momentum`: angular momentum in the principal frame; it
-/// rotates by the opposite angle, so that the angular momentum in the world frame is conserved.
+/// / moments[axis]. `rotation`: principal frame to world. `own_momentum`: angular momentum in the principal frame. The
+/// principal frame rotates with the body, so this vector rotates by the opposite angle in it: the angular momentum in
+/// the world frame is conserved.
 inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat3& rotation, Vec3& own_momentum) {
     const Real angle = seconds * own_momentum[axis] / moments[axis];
     if (angle == 0) return;

@@ -52,8 +52,8 @@ struct Corotational {
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
                                                         const T& trace) {
-        // Near the rest shape the terms 2 mu F and -2 mu R nearly cancel. The rounding error that remains is relative
-        // to 2 mu, not to the small stress.
+        // Near the rest shape the terms 2 mu F and -2 mu R nearly cancel. So the stress, however small, has a rounding
+        // error of about the machine epsilon times 2 mu.
         const Real two_mu = 2 * material.shear_modulus;
         const T pressure = material.lame_lambda * (trace - 3.0);
         return {T{} + two_mu, pressure - two_mu, R};
@@ -73,12 +73,15 @@ struct Corotational {
 private:
     /// Returns kappa for the upper bound of dP/dF (docs/methods/stable_step.md 4.2). The frame R, the rotation nearest
     /// to F, rotates with F. For changes X of F that rotate R, this adds the stiffness c G^-1, with S = R^T F,
-    /// G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu. Its upper bound is kappa (X - R X^T R).
+    /// G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu. Its upper bound is kappa (X - R X^T R), where kappa bounds
+    /// c G^-1.
     ///
     /// The eigenvalues of G are the sums s_i + s_j of two stretches. They differ by at most 2 spread from their mean
-    /// 2/3 tr S, where 6 spread^2 = |dev S|^2. Sums below 1e-3 are replaced by 1e-3, because R is not unique if a sum
-    /// is 0. Under compression kappa is negative. It is limited to -mu from below, so that the stiffness 2 mu + 2 kappa
-    /// stays non-negative. A negative stiffness causes no vibration, so it does not limit the step.
+    /// 2/3 tr S, where 6 spread^2 = |dev S|^2. kappa is c divided by the least possible sum if c > 0, otherwise by the
+    /// greatest. Sums below 1e-3 are replaced by 1e-3, because R is not unique if a sum is 0.
+    ///
+    /// Under compression kappa is negative. It is limited to -mu from below, so that the stiffness 2 mu + 2 kappa stays
+    /// non-negative. A negative stiffness causes no vibration, so it does not limit the step.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

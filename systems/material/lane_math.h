@@ -78,9 +78,9 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress as the sum of_F F + of_other other, with the deformation gradient F and a matrix `other` [Pa]. In this form
-/// a caller can scale the stress or add multiples of F by changing two numbers per lane. Laws whose stress has another
-/// form return a matrix.
+/// A stress as a sum of two terms: the factor `of_F` times the deformation gradient F, plus the factor `of_other` times
+/// the matrix `other` [Pa]. In this form a caller can scale the stress or add multiples of F by changing two numbers
+/// per lane. Laws whose stress has another form return a matrix.
 template <class T>
 struct SplitStress {
     T of_F, of_other;

@@ -17,7 +17,7 @@ Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
 /// Energy density at small strain for the displacement gradient `change` [J/m^3]. Anisotropic laws compute it by their
-/// member energy_of_strain. All other laws agree with the law Linear at small strain.
+/// member energy_of_strain. For all other laws it is that of the law Linear, with which they agree at small strain.
 Real small_strain_energy(const MaterialConstants& material, const Mat3& change);
 /// Block -df_k/dx_l of the stiffness matrix at small strain, per volume, with the force f_k on node k and the position
 /// x_l of node l [Pa/m^2]. `g` and `other` are the shape function gradients of nodes k and l [1/m]. Anisotropic laws

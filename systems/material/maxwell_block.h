@@ -1,7 +1,7 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
 // are computed and stored in single precision. Their rounding errors, 6e-8 of the strains, are negligible in the
-// stress. Loops over components are unrolled, so that the components stay in registers. The outer loop runs over
-// components, the inner one over springs. Sums are accumulated within these loops, so that few registers are needed.
+// stress. The loop over strain components contains the loop over springs; both are unrolled. Each sum is updated as
+// soon as a component is known, so that few components must be kept in registers.
 #pragma once
 
 #ifdef __AVX512VL__
@@ -36,8 +36,9 @@ struct SixFloats {
     KernelFloat of[count];
 };
 
-// The functions below sum in an order that does not depend on the register width, so results are bitwise equal. Halves
-// of 512-bit registers are moved with intrinsics, because gcc shuffles the whole register for __builtin_shufflevector.
+// The functions below sum in an order that does not depend on the register width, so results are bitwise equal for all
+// widths. Halves of 512-bit registers are moved with intrinsics, because gcc shuffles the whole register for
+// __builtin_shufflevector.
 #ifdef __AVX512VL__
 [[gnu::always_inline]] inline KernelFloat together(const Float8& a, const Float8& b) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1);
@@ -155,9 +156,9 @@ struct MaxwellStep {
 /// receives those of this step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus.
 /// Spring strains of the block that comes `ahead` blocks later are prefetched.
 ///
-/// The dashpots dissipate energy. Per volume, it is the mean of the spring stresses in the last and this step, times
-/// the strain change of the dashpots. `dissipated` receives this energy density for the time since the last step,
-/// divided by a quarter of step.modulus.
+/// `dissipated` receives the energy per rest volume that the dashpots have dissipated since the last step, divided by
+/// step.modulus / 4. This energy is the mean of the spring stresses in the last step and in this step, times the strain
+/// change of the dashpots.
 [[gnu::always_inline]] inline LaneSymmetric<Float8> relax(const MaxwellStep& step, const LaneSymmetric<Float8>& strain,
                                                           const Float8& relaxes_volume, const SpringStrain& last,
                                                           SpringStrain& next, std::size_t ahead, Float8& dissipated) {

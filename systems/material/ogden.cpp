@@ -8,8 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// A positive number y(x): x above a limit, limit^2 / (2 limit - x) below it. `value`: y. `slope`: y'/y with the
-/// derivative y' by x. `curvature`: the derivative of y'/y by x.
+/// A positive number y(x): x above a limit, limit^2 / (2 limit - x) below it. `value`: y. `slope`: logarithmic
+/// derivative y'/y. `curvature`: derivative of `slope` by x.
 template <class T>
 struct Limited {
     T value, slope, curvature;
@@ -51,9 +51,9 @@ struct PrincipalShape {
           log_stretch{log_of(stretch[0].value), log_of(stretch[1].value), log_of(stretch[2].value)},
           log_volume(log_of(volume.value)) {}
 
-    /// For each axis: `power` is (s_i / J^(1/3))^a with the stretch s_i and the exponent a. `over_exponent` is
-    /// power / a. For a = 0, `power` is 1 and `over_exponent` is the logarithm, the limit of (power - 1)/a. For other
-    /// a, -1/a is left out, because a constant cancels in the derivatives of the law.
+    /// Quantities of one term of the law for each axis, with the stretch s_i, the exponent a and x_i = s_i / J^(1/3).
+    /// `power`: x_i^a. `over_exponent`: derivative of the term by log x_i, divided by the modulus of the term. It is
+    /// `power` / a, or log x_i if a = 0.
     struct Powers {
         Three<T> power, over_exponent;
     };

@@ -48,7 +48,7 @@ struct Ogden {
 
     /// Upper bound of that part of dP/dF which is due to the energy of shape changes, as a quadratic form in a change X
     /// of F [Pa]: even |X_e|^2 + odd |X_o|^2 - volume (R : X)^2. R is the rotation nearest to F. X = X_e + X_o, where
-    /// X_e = R X_e^T R stretches and X_o = -R X_o^T R rotates.
+    /// R^T X_e is the symmetric part of R^T X (a stretch), and R^T X_o its skew part (a rotation).
     template <class T>
     struct FrameBound {
         LaneMat3<T> R;

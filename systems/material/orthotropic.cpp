@@ -180,8 +180,10 @@ Mat3 normal_stiffness(const OrthotropicModuli& moduli) {
 }
 
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material) {
-    // The isotropic part of the stiffness has nine tenths of the smallest eigenvalue of the stiffness. So the stiffness
-    // minus the isotropic part stays positive definite.
+    // The isotropic material must not be stiffer than the orthotropic one for any strain. Its 2 mu is nine tenths of
+    // the smallest eigenvalue of the stiffness. So the stiffness minus 2 mu I stays positive definite. Its lambda is
+    // the greatest for which this difference, minus lambda in all entries of normal strains, has no negative
+    // eigenvalue.
     constexpr Real isotropic_share = 0.9;
     const Mat3 normal = normal_stiffness(moduli);
     const Vec3& G = moduli.shear_modulus;

@@ -64,8 +64,8 @@ struct Orthotropic {
 
 /// Sets the elastic constants of an orthotropic material. Its Lame constants become those of an isotropic material that
 /// is not stiffer than the orthotropic one for any strain. The Maxwell elements, which model losses, use these Lame
-/// constants. So the bound on the stable step holds for them, too. Requires valid moduli: positive shear moduli, and a
-/// positive definite compliance of the normal strains.
+/// constants; if they were stiffer for some strain, the bound on the stable step would not hold for them. Requires
+/// valid moduli: positive shear moduli, and a positive definite compliance of the normal strains.
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material);
 
 /// Rotates the axes of an orthotropic material by `rotation`.

@@ -17,8 +17,8 @@ namespace skerry {
 ///
 ///     has_frame           true if the law uses a frame that rotates with the element: then all functions by lanes take
 ///                         R, the rotation nearest to F
-///     stiffness_varies    true if the stiffness depends on the deformation: then stiffness_bound by lanes is a factor
-///                         on the share that an element gets in the mass of its nodes
+///     stiffness_varies    true if the stiffness depends on the deformation: then the law also has stiffness_bound by
+///                         lanes, and an element gets a share in the mass of its nodes in proportion to this bound
 ///     stress_flops        number of operations of stress by lanes per tetrahedron, for profile_elements
 ///     energy_density, stress, stiffness_bound (material, F)     for one element, the simple reference for the kernels
 ///     tangent (material, F)                                     for one element, for Newton steps

@@ -17,11 +17,11 @@ namespace {
 constexpr Real single_cost = 0.06;
 constexpr Real region_cost = 0.1, contact_cost = 0.06;  // per region, per contact: loading, warm start, writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
-// Limits of the predicted cost of a task. The lower limit is several times the cost of starting a task, about 1
-// microsecond.
+// Limits of the predicted cost of a task [microseconds]. The lower limit is several times the cost of starting a task,
+// which is about 1 microsecond.
 constexpr Real largest_task = 50, smallest_task = 4;
-// Number of tasks per worker. The worker that finishes last is then late by at most about one task, a quarter of the
-// mean time per worker.
+// Number of tasks per worker. A task then takes a quarter of the mean time per worker, and the worker that finishes
+// last is late by at most about this time.
 constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;

@@ -28,9 +28,10 @@ struct CollisionGroups {
     std::uint32_t mask = 0;   // groups that it can touch
 };
 
-/// Friction and restitution of a body, a collider, a pair of materials or a surface set. Missing values of a body are
-/// those of its material. Missing values of a collider are those of the body that touches it. Missing values of a pair
-/// of materials follow from the two objects (see MaterialPair). Missing values of a surface set are those of its body.
+/// Friction and restitution of a body, a collider, a pair of materials or a surface set. A value that is not given is
+/// taken from elsewhere. Body: from its material. Collider: from its material (SurfacePairs::set_material) or, without
+/// a material, from the body that touches it. Pair of materials: from the two objects (see MaterialPair). Surface set:
+/// from its body.
 struct SurfaceSettings {
     // Coulomb's friction coefficient, >= 0; default value of static_friction and dynamic_friction
     std::optional<Real> friction{};

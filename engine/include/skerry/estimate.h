@@ -24,16 +24,18 @@ struct ErrorEstimate {
     // Error of the stress of the tetrahedra, due to the mesh: e / sqrt(e^2 + s^2), with the energy norms e of the error
     // and s of the stress.
     Real mesh = not_estimated;
-    // Error of the displacement that given loads cause, due to the mesh. Positive if the mesh is too stiff, negative if
-    // it is too soft. `deflection` times `deformation` is the relative error of the motion.
+    // Relative error, due to the mesh, of the displacement that given loads cause. Positive if the mesh is too stiff,
+    // negative if it is too soft. Only displacements by deformation have this error. The relative error of the whole
+    // motion is therefore `deflection` times `deformation`, the share of the deformation in the motion.
     Real deflection = not_estimated;
-    // Error of the displacement of a single node, due to the mesh, which comes in addition to `deflection` [m]: error
-    // of linear interpolation along an edge, as root mean square over the edges.
+    // Error of the displacement of a single node, due to the mesh [m]. It adds to `deflection`, the error of the body
+    // as a whole. It is estimated as the error of linear interpolation of the displacements along an edge, as root mean
+    // square over the edges.
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
-    // Error of the motion, due to the length of the steps: distance of the nodes from their positions with infinitely
-    // short steps, divided by their displacement from the start. The distance and the displacement are root mean
-    // squares over the nodes, each at the sample with its largest value. Not estimated for a body at rest.
+    // Relative error of the motion, due to the length of the steps: a / b. a: distance of the nodes from the positions
+    // that they would have with infinitely short steps. b: displacement of the nodes from the start. Both are root mean
+    // squares over the nodes, and for both the largest value of all samples is used. Not estimated for a body at rest.
     Real step = not_estimated;
     // Displacement by deformation divided by displacement from the start, at most 1. Both displacements are root mean
     // squares over the nodes, as for `step`. Not estimated for a body at rest.
@@ -79,9 +81,9 @@ private:
 };
 
 /// Estimated relative error of the present stress of each tetrahedron, due to the mesh: sqrt(e / E). e is the energy of
-/// the stress error of the tetrahedron per volume. E is the energy of the stress and the stress error of the whole body
-/// per volume. Empty for a rigid body. To reduce the error, refine the mesh where the values are largest (Zienkiewicz,
-/// Zhu 1987).
+/// the stress error of the tetrahedron, per volume. E is the sum of the energies of the stress and of the stress error
+/// of the whole body, per volume. Empty for a rigid body. To reduce the error, refine the mesh where the values are
+/// largest (Zienkiewicz, Zhu 1987).
 std::vector<Real> mesh_error(const World& world, BodyHandle body);
 
 }  // namespace skerry

@@ -91,12 +91,15 @@ FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSetti
 FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 
-/// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
-/// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance`, `cavities` and whether
-/// skerry-fill (the program that runs Netgen) is installed. It does not depend on `material`: the best mesh is chosen
-/// for the default material, so one file serves all materials. A text file beside the cache file keeps the notes of the
-/// filling. No cache file is written if FilledMesh::may_change is true although skerry-fill is installed. `notes` gets
-/// the notes of reading and filling, also if the mesh comes from the cache file, and a note if no file was written.
+/// Returns the mesh that fills a surface file. Reads it from the cache file beside the surface file, or else fills the
+/// surface and writes the cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance`,
+/// `cavities` and whether skerry-fill (the program that runs Netgen) is installed. It does not depend on `material`:
+/// the best mesh is chosen for the default material, so one file serves all materials.
+///
+/// If skerry-fill is installed, but did not start, crashed or reached a limit (FilledMesh::may_change), no cache file
+/// is written, so that the next call tries again. A text file beside the cache file keeps the notes of the filling.
+/// `notes` gets the notes of reading and filling, also if the mesh comes from the cache file, and a note if no file was
+/// written.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

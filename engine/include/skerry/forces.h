@@ -64,10 +64,11 @@ struct PairForces {
 /// A view of the measured forces of a world. It is valid until the world is moved or destroyed. Contacts of bodies and
 /// colliders that were removed since the last call of advance are not included.
 ///
-/// Forces on sleeping bodies are mean values over the time in which the bodies were still before they fell asleep. For
-/// each body these forces balance the weight and the loads. The error of this balance is at most the change of the
-/// momentum of the body during this time, divided by this time (at least sleep_time). If forces were not measured
-/// during this time, the forces of the last step before the sleep are used (World::contacts).
+/// Steps do not compute sleeping bodies. The forces on a sleeping body are mean values over the time in which it was
+/// still before it fell asleep (at least sleep_time). They balance the weight and the loads of the body. The error of
+/// this balance is at most the change of the momentum of the body during this time, divided by this time. If forces
+/// were not measured during this time, the forces of the last step before the sleep are used, which World::contacts
+/// also returns.
 ///
 /// The impulses on the two partners of a pair are exactly opposite, but their moments about one point are not. Each
 /// impulse acts at the surface of its own object. Where there is a gap between the two surfaces, friction exerts a
@@ -85,8 +86,8 @@ public:
     ForceReport on(ColliderHandle collider, BodyHandle by) const;
     /// Forces of an attachment on its body. They keep the attached nodes on their prescribed motion: they balance
     /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, the
-    /// force on this node belongs to the attachment added last. The drag by MaterialSettings::damping is not included.
-    /// It acts on all nodes of a body with held nodes, as if the body were in a medium at rest.
+    /// force on this node belongs to the attachment added last. The drag by MaterialSettings::damping is not included:
+    /// in a body with held nodes this drag acts on all nodes, as if the body were in a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
     /// All pairs of objects that touched during the last call of advance: first body-collider pairs, then body-body
     /// pairs, each sorted by handles.

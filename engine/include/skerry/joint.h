@@ -116,9 +116,10 @@ public:
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
     /// present one changes no bit of the state.
     void set_motor(JointHandle joint, const std::optional<JointMotor>& motor);
-    /// Sets or removes the limits of the joint coordinate. A joint beyond a limit is pulled back at a bounded speed.
-    /// For a slider the upper limit of this speed is Settings::recovery_speed plus the speeds that the angular
-    /// velocities of both bodies cause at the joint. For a hinge it is 1 rad/s plus both angular speeds.
+    /// Sets or removes the limits of the joint coordinate. A joint beyond a limit is pulled back at a bounded speed, to
+    /// avoid jerks. For a slider the upper limit of this speed is Settings::recovery_speed, plus the speeds at which
+    /// the joint point moves around the centres of mass of both bodies when they rotate. For a hinge it is 1 rad/s plus
+    /// both angular speeds.
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
     /// Sets spring, damper and friction of a hinge or a slider.
     void set_passive(JointHandle joint, const JointPassive& passive);

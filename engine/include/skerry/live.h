@@ -51,8 +51,8 @@ public:
     void close();
     /// False after close().
     bool is_open() const;
-    // False if the view is paused. However, true from the request of a single step until the next call of sync() or
-    // due(), so that the caller takes the step.
+    // True if the view plays, false if it is paused. Exception: if a browser has requested a single step, true until
+    // the next call of sync() or due(), so that the caller takes the step.
     bool playing() const;
     int clients() const;  // number of connected browsers
     /// Number of frames sent to browsers.
@@ -78,8 +78,9 @@ public:
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. Call it after a step that failed.
     void fail(const std::string& text);
-    /// From now on refuses the resets that browsers request, and shows them the reason. Use this, for example, while a
-    /// recorder could not continue at an earlier time. An empty text allows resets again.
+    /// From now on refuses the resets that browsers request, and shows them the reason. A reset moves the world back in
+    /// time. Use this function, for example, while a recorder runs that could not continue at an earlier time. An empty
+    /// text allows resets again.
     void refuse_resets(const std::string& reason);
     /// Advances the world as the browsers ask, until `go_on` returns false. `go_on` is called before each step. One
     /// call of advance() covers at most 1/60 s of simulated time. A step that cannot be committed pauses the view;

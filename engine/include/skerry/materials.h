@@ -43,9 +43,9 @@ std::span<const NamedMaterial> named_materials();
 std::span<const KnownFriction> known_frictions();
 
 /// Settings of the material called `name`. `friction` is the dynamic friction of two surfaces of this material if
-/// known_frictions() lists this pair, else the default. Loss factors below 0.01 are left out, so that the material can
-/// be used for implicit bodies, which accept no loss factor: such small values belong to stiff materials, for which
-/// implicit bodies are suitable. Throws SceneError if no material has this name.
+/// known_frictions() lists this pair, else the default. Loss factors below 0.01 are left out. Such small values belong
+/// to stiff materials, for which implicit bodies are suitable, and implicit bodies accept no loss factor. Throws
+/// SceneError if no material has this name.
 MaterialSettings named_material(std::string_view name);
 
 /// A term of the law of Ogden, with the constants that the literature uses; see ogden(). The modulus mu_p and the

@@ -136,16 +136,18 @@ struct LumpedContacts {
     std::vector<std::array<Index, 4>> node;   // nodes of the stencil
     std::vector<std::array<Real, 4>> weight;  // signed weights of these nodes in the relative velocity
     std::vector<Vec3> normal;                 // unit normal of the contact
-    // Velocity offset of the contact [m/s]: the sum of the contributions of the gap, of the collider's motion and of
-    // the angular velocity of round bodies, minus a friction correction. The forces of the step change the sliding
-    // velocity; the correction is half of the part of this change that is perpendicular to the sliding direction.
+    // Velocity offset of the contact [m/s]: the sum of three contributions minus a friction correction. The
+    // contributions are due to the gap, the motion of the collider, and the angular velocity of round bodies. The
+    // correction makes friction act along the sliding direction at the middle of the step. The forces of the step
+    // change the sliding velocity; the correction is half of that part of the change that is perpendicular to the
+    // sliding direction.
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // coefficient of friction mu
     // The following arrays have one entry per node.
     std::vector<Real> inverse_mass;  // inverse mass; 0 if no impulse moves the node [1/kg]
     std::vector<Vec3> velocity;      // velocity before the contact impulses [m/s]
-    // Nodes in the following lists get their inverse masses from these lists. Their inverse_mass is not used, but must
-    // not be 0, which would mark them as immovable.
+    // A node in one of the following lists has the inverse mass that this list gives. Its entry in inverse_mass is not
+    // used, but must not be 0, because 0 would mark the node as immovable.
     std::vector<CoupledNodes> coupled{};     // groups of nodes with a common mass matrix
     std::vector<RigidPoints> rigid{};        // rigid and implicit bodies
     std::vector<StrainedPoints> strained{};  // deformation of implicit bodies
@@ -159,11 +161,14 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
-/// Contacts that no impulse can move are omitted. If static friction differs from dynamic friction, or friction depends
-/// on the direction, `impulse` does not solve `problem`, which has only one coefficient per contact. The constraints of
-/// joints, of weld and ball ties, and of nodes held along single directions are eliminated from `problem`: its W and q
-/// describe the constrained bodies. Some impulses of the step are taken as given, and their effect is part of q: those
-/// of slide ties, of motors, limits and passive forces of joints, and of cables with friction or a prescribed length.
+/// `problem` differs from the problem of the step:
+/// - Contacts that no impulse can move are omitted.
+/// - Each contact has only one friction coefficient. So if static friction differs from dynamic friction, or friction
+///   depends on the direction, `impulse` does not solve `problem`.
+/// - The constraints of joints, of weld and ball ties, and of nodes held along single directions are eliminated: W and
+///   q describe the constrained bodies.
+/// - Some impulses of the step are taken as given, and their effect is part of q: those of slide ties, of motors,
+///   limits and passive forces of joints, and of cables with friction or a prescribed length.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]

@@ -19,7 +19,9 @@ class Ranks;
 /// Rule that chooses the rank that owns each body. Connected bodies, for example those of a joint, always have one
 /// owner. The rule does not affect the results of steps.
 enum class OwnerMap : std::uint8_t {
-    curve,        // pieces, of equal computing cost, of a Hilbert curve through the bodies: a rank owns neighbours
+    // A Hilbert curve through the bodies is cut into pieces of equal computing cost. Each rank owns the bodies of one
+    // piece, which are neighbours.
+    curve,
     round_robin,  // the ranks in turn, body by body
     random,       // random ranks, from RankSettings::seed
 };
@@ -41,10 +43,10 @@ struct RankSettings {
     std::uint64_t seed = 1;  // seed of OwnerMap::random
 };
 
-/// Divides the world of rank 0 among all ranks, which must all call the function. Parts of this world, with the same
-/// handles, replace the worlds of the other ranks, so these ranks may pass empty worlds. Only the backend, the number
-/// of threads and the callback of watch_steps() of their worlds stay. If the world cannot be divided, throws SceneError
-/// on all ranks.
+/// Divides the world of rank 0 among all ranks, which must all call the function. Each other rank passes a world, which
+/// may be empty. A part of the world of rank 0, with the same handles, replaces its content. Only the backend, the
+/// number of threads and the callback of watch_steps() stay. If the world cannot be divided, throws SceneError on all
+/// ranks.
 ///
 /// Afterwards each rank simulates the bodies that it owns. All ranks must make the same calls of advance() and
 /// gathered(). An error of one rank alone, such as too little memory, ends all ranks with a message and exit code 1.

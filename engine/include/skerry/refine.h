@@ -14,7 +14,8 @@ namespace skerry::mesh {
 /// The surface keeps its shape: new nodes stay on the flat triangles, even if these approximate a curved surface. The
 /// present nodes keep their numbers, and the new nodes are appended; in Mesh::file_number new nodes get numbers after
 /// the largest one. The parts of a tetrahedron have its label and vectors. In sets, the parts of a face or tetrahedron
-/// replace it. A set of nodes gets two kinds of midpoints, so that it covers the refined faces and curves:
+/// replace it. A set of nodes can stand for faces or for curves of the surface. It gets two kinds of midpoints, so that
+/// it also contains the new nodes of these faces and curves:
 /// - midpoints of the edges of each face whose three nodes are all in the set,
 /// - midpoints of edges with both ends in the set, unless both ends belong to such faces.
 ///

@@ -65,8 +65,8 @@ struct EnumNames<StepLimit> {
 /// the last step before the bodies fell asleep. Its impulse is scaled to the present `seconds`, so that force() returns
 /// the contact force of that step.
 struct Contact {
-    // Body of the point, if a point touches a triangle, or of the first edge, if two edges touch. A stale handle if
-    // this point or edge belongs to a mesh collider.
+    // Body with the point, if a point touches a triangle. Body with the first edge, if two edges touch. A stale handle
+    // if this point or edge belongs to a mesh collider.
     BodyHandle first{};
     BodyHandle second{};        // the other body; a stale handle if the partner is a collider
     ColliderHandle collider{};  // the collider; a stale handle if both partners are bodies
@@ -78,8 +78,8 @@ struct Contact {
     Vec3 point = Vec3::Zero();   // contact point on the second body or the collider [m]
     Vec3 normal = Vec3::Zero();  // unit normal, pointing towards the first body
     Real distance = 0;           // distance between the surfaces; negative if they overlap [m]
-    // Distance by which the surfaces may still approach [m]: `distance` minus the contact distance, or slightly more at
-    // nearly flat edges.
+    // Distance by which the surfaces may still approach [m]: `distance` minus the contact distance. At an edge whose
+    // two faces have almost the same normal, it is slightly more (docs/methods/collision.md 4.5).
     Real gap = 0;
     // Friction coefficients of this contact. If they depend on the direction, they apply along `friction_direction`,
     // and `friction_across` is the coefficient of sliding across it.
@@ -173,8 +173,8 @@ public:
     std::string body_name;  // name of `body`; empty if there is none
 };
 
-/// Statistics of the steps, since the world was made, whose length was limited by one cause. A cause is a condition
-/// together with the body that meets it.
+/// Statistics about one cause that limits the length of steps. A cause is a condition (StepLimit) together with the
+/// body that meets it. The statistics cover all steps since the world was made.
 struct StepLimitReport {
     StepLimit limit = StepLimit::rest;  // the condition
     BodyHandle body{};        // the body; a stale handle if the condition belongs to no body (setting, crossing)
@@ -377,12 +377,12 @@ struct WorldReport : RunCounters {
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Largest errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not
     // explain. The balances are checked every 256 steps (every 128 steps if there are clusters) and now. A relative
-    // error is the absolute error divided by the energy or momentum that is present or was exchanged (sum of
-    // magnitudes).
+    // error is the absolute error divided by a sum of magnitudes: the energy or momentum that is present, plus that
+    // which was exchanged.
     Real energy_error = 0, energy_error_share = 0;  // absolute error [J]; relative error [1]
-    // Absolute error [kg m/s] and relative error [1] of the momentum. They are NaN if a held body is damped, or if a
-    // held node belongs to an implicit element: the damping, or the inertia of the element, then absorbs momentum that
-    // the balance does not include. World::forces reports the momentum that the element absorbs.
+    // Absolute error [kg m/s] and relative error [1] of the momentum. They are NaN in two cases, because the balance
+    // does not include the momentum that is then absorbed. A held body is damped: the damping absorbs it. A held node
+    // belongs to an implicit element: the inertia of this element absorbs it, and World::forces reports how much.
     Real momentum_error = 0, momentum_error_share = 0;
     // Number of steps since the balances were restarted by the last change from outside, such as an added body.
     std::uint64_t balanced_steps = 0;

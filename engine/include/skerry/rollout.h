@@ -60,8 +60,8 @@ struct RolloutControl {
     std::variant<PoseControl, VelocityControl, MotorSpeedControl, MotorPositionControl, NodeForceControl,
                  BodyForceControl, GravityControl, ValueControl>
         what;  // the controlled object and quantity
-    // Values of the control in the order of worlds, then intervals: as many values per interval as the kind of control
-    // states. If the values of only one world are given, they apply to all worlds. The values are not copied and must
+    // Values of the control, ordered by world, then by interval. The kind of control states how many values an interval
+    // has. If the values of only one world are given, they apply to all worlds. The values are not copied and must
     // exist until rollout() returns.
     std::span<const Real> values;
 };

@@ -26,10 +26,10 @@ struct SceneOverrides {
     std::optional<StartOverlaps> start_overlaps{};    // Settings::start_overlaps
     std::optional<Real> step_size{};                  // Settings::step_size [s]
     std::optional<ElementKind> element{};  // element kind for all bodies, in place of the kinds in the scene file
-    // Assignments PLACE=VALUE to keys of the scene file, such as bodies[0].position=[0,0,1]. They change the scene file
-    // itself, not the files that it includes, in the given order. The other members of this struct are applied later.
-    // PLACE has the form that error messages use for a place in the file. VALUE is JSON; if it is not valid JSON, it is
-    // taken as a text.
+    // Assignments PLACE=VALUE to keys of the scene file, such as bodies[0].position=[0,0,1]. They are made in the given
+    // order, before the other members of this struct replace values. They change only the scene file itself, not the
+    // files that it includes. PLACE is written as in error messages about the scene file. VALUE is JSON; if it is not
+    // valid JSON, it is taken as a text.
     std::vector<std::string> assignments{};
     std::string fill_python{};  // Python interpreter for filling surfaces; see mesh::FillSettings::python
 };
@@ -51,7 +51,8 @@ struct Scene {
     World world;                          // the world at the time 0
     std::vector<Probe> probes;            // node sets whose contacts the run reports
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
-    // Time between two samples of `probes`, and between two rows of a Recorder with the probes `recorded` [s].
+    // Time between two samples of the contacts of `probes`. Also the time between two rows of the time series that a
+    // Recorder writes for the probes `recorded` [s].
     Real probe_step = 1.0 / 60;
     std::vector<Slider> sliders{};  // values that a user of the live view can change
     // corrections and warnings from reading the file, for example about filled surfaces

@@ -58,8 +58,9 @@ struct MaterialSettings {
     // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body. In
     // each period a free vibration loses about the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05
     // to 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001. A positive value makes the stable step a few per
-    // cent shorter (docs/methods/elasticity.md 6). If not given, explicit bodies have default_loss_factor. Implicit
-    // bodies have no such losses. A value above 0 is refused for them, and makes an `automatic` body explicit.
+    // cent shorter (docs/methods/elasticity.md 6). If not given, explicit bodies have default_loss_factor, and implicit
+    // bodies have no such losses. If a value above 0 is given, `implicit` is refused, and `automatic` makes the body
+    // explicit.
     std::optional<Real> loss_factor{};  // from 0 to 0.3
     // Damping ratio of volume changes of an element, at the highest natural frequency of this element. Implicit bodies
     // do not use this value.
@@ -67,9 +68,9 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;  // elastic law
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
-    // Elastic constants of the law `orthotropic`. With this law, losses and estimates use an isotropic material that is
-    // at most as stiff as the orthotropic one for every strain. Constants of this isotropic material replace
-    // young_modulus and poisson_ratio.
+    // Elastic constants of the law `orthotropic`. For this law, the viscous stress (loss_factor, bulk_viscosity) and
+    // estimates such as that of the expected strain use an isotropic material instead. It is at most as stiff as the
+    // orthotropic one for every strain. Its constants replace young_modulus and poisson_ratio.
     OrthotropicModuli orthotropic{};
     std::optional<Plasticity> plasticity{};  // only with the law `hencky`, and only for explicit bodies
 };
@@ -84,11 +85,11 @@ enum class BodyDynamics : std::uint8_t {
     // bodies. At strains up to about 2 %, elasticity is linear in the frame that moves with the body. At larger strains
     // it follows the material law, and Newton's method solves each step (docs/methods/implicit_bodies.md).
     implicit_elastic,
-    // The body becomes implicit if its predicted cost is then less than half of that as explicit body, and the expected
-    // strain is at most 2 %; otherwise it becomes explicit. The choice is made when the body is added, for the step
-    // length that the bodies added before it allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a
-    // body added later requires much shorter steps, the costs are compared again. An implicit body can then become
-    // explicit, as by World::set_dynamics().
+    // The engine chooses when the body is added. The body becomes implicit if the predicted cost of the scene is then
+    // less than half of the cost with this body explicit, and the expected strain is at most 2 %; otherwise it becomes
+    // explicit. Both costs are predicted for the step length that the bodies added earlier allow
+    // (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body added later requires much shorter steps,
+    // the costs are compared again. An implicit body can then become explicit, as by World::set_dynamics().
     automatic,
 };
 template <>
@@ -116,8 +117,8 @@ struct BodySettings {
     Vec3 rotation = Vec3::Zero();          // initial rotation: axis times angle [rad]
     Vec3 velocity = Vec3::Zero();          // initial velocity of the centre of mass [m/s]
     Vec3 angular_velocity = Vec3::Zero();  // initial angular velocity about the centre of mass [rad/s]
-    // Contacts act where surfaces are closer than the contact distance, for two bodies the mean of theirs. >= 0;
-    // default: 2 % of the mean edge length of the surface [m].
+    // Contact distance, >= 0: contacts act where two surfaces are closer than this. Between two bodies, the mean of
+    // their contact distances applies. Default: 2 % of the mean edge length of the surface [m].
     std::optional<Real> contact_distance{};
     bool self_contact = false;                        // true: contacts act between parts of the surface of the body
     BodyDynamics dynamics = BodyDynamics::automatic;  // how the body moves
@@ -170,7 +171,7 @@ using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, Surfac
 /// axis at constant speed.
 struct MotionKey {
     Real time = 0;                 // time, which must increase from key to key [s]
-    Vec3 position = Vec3::Zero();  // position of the origin of the moved frame in the world [m]
+    Vec3 position = Vec3::Zero();  // position of the origin of the frame of the moved object in the world [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
@@ -260,16 +261,16 @@ struct Settings {
     StartOverlaps start_overlaps = StartOverlaps::resolve;
     // If true, bodies that touch or are joined fall asleep together when each of them has been still for sleep_time.
     // Steps leave sleeping bodies and their contacts unchanged, until another object presses on such a body, or you
-    // change the body. A body is still if it hardly moves and its motion neither grows nor continues steadily. It is
-    // then so near to equilibrium that the remaining displacement is about a thousandth of its deflection or less
-    // (docs/methods/skipping.md 3.1). Change it when you study slower or smaller motion.
+    // change the body. A body is still if it hardly moves, becomes no faster, and does not move steadily in one
+    // direction. It is then near its equilibrium: the distance to it is at most about a thousandth of the deflection of
+    // the body under its weight (docs/methods/skipping.md 3.1). Change it when you study slower or smaller motion.
     bool sleep = true;
     // Time for which a body must be still before it falls asleep, >= 0 [s]. Change it when bodies fall asleep too early
     // or too late.
     Real sleep_time = 0.5;
     // If true, a step in which surfaces would pass through each other is repeated, with contacts between the features
     // (nodes, edges, triangles) that crossed. Only features that move fast enough to meet in the step are tested.
-    // Change it when surfaces may pass through each other and the tests cost too much time.
+    // Change it when these tests cost too much time, and surfaces that pass through each other do no harm.
     bool continuous_collision = true;
 };
 

@@ -22,8 +22,8 @@ struct SpringSettings {
     Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
     std::optional<TimeTable> rest_length{};  // each value >= 0; default: the length when the spring is added [m]
     SpringSide only = SpringSide::both;      // spring and damper act in tension, in compression or in both
-    // Largest magnitude of the force of spring and damper together, > 0 [N]. A spring that is stretched or compressed
-    // further keeps this force.
+    // Upper limit of the magnitude of the force of spring and damper together, > 0 [N]. Where stiffness and damping
+    // would give a larger force, the force has this magnitude.
     Real strength = infinity;
 };
 

@@ -57,7 +57,8 @@ struct StudyColumn {
     Real size = 0;
     // false for a column that gets no error bar of its own, such as the position of one of many bodies
     bool reported = true;
-    // true for a mean, least or largest value over all bodies without attachments, meaningful also in a chaotic run
+    // true for a column with the mean, least or largest value over all bodies without attachments; such values are
+    // meaningful also in a chaotic run
     bool is_statistic = false;
     std::vector<Real> values{};  // one for each time in StudyRun::time; NaN if unknown
     // For a column of a largest stress: number of the node with the largest value in the run, within its body. For
@@ -121,8 +122,8 @@ struct EnumNames<StudyVerdict> {
 
 /// A number with its error bar. Values that were not measured are NaN.
 struct StudyQuantity {
-    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end. FIGURE tells the value of the time series: end, max,
-    // min, mean, or agreed (last value on which runs with shifted start positions agree).
+    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end. FIGURE tells which number is taken from the time
+    // series: end, max, min, mean, or agreed (the last value on which runs with shifted start positions agree).
     std::string name;
     std::string unit;                                     // SI unit; 1 for counts and ratios
     Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
@@ -134,7 +135,8 @@ struct StudyQuantity {
     Real mesh = std::numeric_limits<Real>::quiet_NaN();
     Real step = std::numeric_limits<Real>::quiet_NaN();     // part of `error` from the step length
     Real contact = std::numeric_limits<Real>::quiet_NaN();  // part of `error` from the tolerance of the contact solver
-    Real noise = std::numeric_limits<Real>::quiet_NaN();    // part of `error` from differences of 1e-12 m at the start
+    // part of `error` from random shifts of the start positions by up to 1e-12 m (StudyVariant::draw)
+    Real noise = std::numeric_limits<Real>::quiet_NaN();
     // Scale to which relative errors refer: the largest absolute value over the run; for lengths and energies, the
     // largest change from the start.
     Real scale = std::numeric_limits<Real>::quiet_NaN();
@@ -155,8 +157,8 @@ struct StudyQuantity {
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
     StudyVariant variant;  // difference from the scene as it is
-    // False if no settings reach the wanted error. These settings are then the cheapest among those whose error exceeds
-    // the smallest error by at most 10 %.
+    // False if no settings reach the wanted error. These settings are then the cheapest of those whose predicted error
+    // is at most 10 % larger than the smallest predicted error of all settings.
     bool reaches = false;
     double error = 0;        // largest predicted relative error of a quantity with the verdict `known` or `irregular`
     double cpu_seconds = 0;  // predicted CPU time [s]
@@ -170,9 +172,9 @@ struct StudyResult {
     std::vector<StudyRun> runs;             // runs[0] is the run of the scene as it is
     std::vector<StudyQuantity> quantities;  // values and error bars of all reported columns
     double wanted_error = 0;                // StudySettings::error
-    // Half widths of the error bars of the values in runs[0].columns, by column and row. The list of a column that is
-    // not reported is empty. Half widths are NaN after StudyQuantity::agree_until of the column's quantities, except in
-    // columns with is_statistic.
+    // Half widths of the error bars of the values in runs[0].columns: bands[c][r] belongs to row r of column c. The
+    // list of a column that is not reported is empty. After the time StudyQuantity::agree_until of the quantities that
+    // come from a column, its half widths are NaN, except in columns with is_statistic.
     std::vector<std::vector<Real>> bands;
     std::optional<CheapestSettings> cheapest;  // empty if no quantity has the verdict `known` or `irregular`
     Real agree_until = infinity;               // time until which runs with shifted starts agree on all positions [s]
@@ -197,9 +199,9 @@ struct StudySettings {
     std::optional<Real> seconds{};           // duration of the runs; empty: that of the scene [s]
     std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
     int threads = 0;                         // number of threads of the study; 0: the number of cores
-    // Upper limit of the wall time of the study, divided by that of one run of the scene with one thread, > 0. Runs
-    // that do not fit are left out, the least important first. Empty: 15, or more as long as the study takes less than
-    // 5 s.
+    // Upper limit of the wall time of the study, > 0, as a multiple of the wall time of one run of the scene with one
+    // thread. Runs with which the study would take longer are left out, the least important first. Empty: the multiple
+    // is 15, or more if the study then still takes less than 5 s.
     std::optional<double> budget{};
     // Folder in which each run is stored when it ends. A later study of the unchanged scene reads these runs instead of
     // making them again. Empty: no folder.

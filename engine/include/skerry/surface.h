@@ -33,8 +33,8 @@ public:
 
     /// Sets the properties of contacts between two materials, and wakes the bodies that have one of the two materials.
     /// The material of a body in a contact is BodySettings::material, even where its tetrahedra have other materials.
-    /// These properties replace the friction and restitution of single bodies and colliders. Those of surface sets take
-    /// precedence.
+    /// Properties of a pair take precedence over the friction and restitution of single bodies and colliders.
+    /// Properties of surface sets take precedence over those of a pair.
     void set(MaterialHandle first, MaterialHandle second, const SurfaceSettings& surface);
     /// Removes the properties of a pair. Does nothing if the pair has none.
     void remove(MaterialHandle first, MaterialHandle second);
@@ -63,9 +63,9 @@ struct SurfaceSetSettings {
     std::vector<Index> nodes{};                 // numbers in the mesh; nodes inside the body have no effect
     std::vector<std::array<Index, 3>> faces{};  // boundary faces, each by its three nodes in any order
     SurfaceSettings surface{};                  // missing properties are those of the body
-    // Friction coefficient for sliding perpendicular to `direction`, > 0. If it is given, the dynamic friction in
-    // `surface` must be given and > 0; it applies to sliding along `direction`. The ratio of the two coefficients also
-    // applies to static friction.
+    // Friction coefficient for sliding perpendicular to `direction`, > 0. It requires that `surface` gives the dynamic
+    // friction, > 0, which then applies to sliding along `direction`. The ratio of these two coefficients also applies
+    // to static friction.
     std::optional<Real> friction_across{};
     // Direction in the frame of the mesh, of any length but zero. It moves with the faces when the body moves and
     // deforms. Required for friction_across.

@@ -25,8 +25,8 @@ enum class SurfaceFaultKind {
     shell_crossings,      // pairs of triangles of different shells that pass through each other
     overlaps,             // pairs of triangles that overlap in a common plane
     flat_shells,          // closed shells without volume
-    doubled_volumes,      // triangles or edges behind which two closed shells enclose the same volume
-    slivers,              // triangles with an altitude up to the length with which check_surface() finds crossings
+    doubled_volumes,      // triangles or edges on the inner side of which the volumes of closed shells overlap
+    slivers,              // triangles whose smallest altitude is at most the overlap that check_surface() tolerates
     thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
@@ -117,11 +117,11 @@ inline constexpr Real default_weld = 1e-6;
 /// A tolerance for check_surface() with which no nodes are merged, not even equal ones.
 inline constexpr Real no_weld = -1;
 
-/// Checks a surface. First merges nodes that are at most d = `tolerance` * (diagonal of the bounding box) apart; in a
-/// chain of such nodes all become one node. With the tolerance 0 only equal nodes are merged. Triangles cross if they
-/// overlap in every direction by more than the larger of d and default_weld times the diagonal. The order of the nodes
-/// and triangles does not change. Throws SceneError if a node is not finite or a triangle has a node that does not
-/// exist. The error uses `name` as the name of the surface.
+/// Checks a surface. First merges nodes that are at most d = `tolerance` * (diagonal of the bounding box) apart; a
+/// chain of such nodes becomes one node. With the tolerance 0 only equal nodes are merged. Two triangles cross if their
+/// projections on every axis overlap by more than the tolerated overlap: the larger of d and default_weld times the
+/// diagonal. The order of the nodes and triangles does not change. Throws SceneError if a node is not finite or a
+/// triangle has a node that does not exist. The error uses `name` as the name of the surface.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 

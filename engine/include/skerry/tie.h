@@ -17,9 +17,9 @@ namespace skerry {
 /// surface point of the other object. Ties::add() throws SceneError if this point is farther away than the mean edge
 /// length of the surface of `body`. The tie of a single node acts like a ball joint.
 ///
-/// The kind `ball` ties only the mean point of all nodes, weighted by their masses. This point may be at any distance
-/// from a rigid object when the tie is made, and then keeps its position relative to this object. The impulse of the
-/// tie acts on the nodes in proportion to their masses.
+/// The kind `ball` ties only one point: the mean point of all nodes, weighted by their masses. When the tie is made,
+/// this point may be at any distance from a rigid object; from then on it keeps its position relative to this object.
+/// The impulse of the tie acts on the nodes in proportion to their masses.
 struct TieSettings {
     TieKind kind = TieKind::weld;  // motion that the tie permits
     BodyHandle body{};             // a deformable body

@@ -53,7 +53,7 @@ VisualSurface read_visual(const std::string& path, std::vector<std::string>* not
 struct VisualFit {
     std::size_t outside = 0;  // number of nodes of the visual surface outside of the body
     Real farthest = 0;        // largest distance of these nodes from the body [m]
-    // Tells if distances or sizes suggest a wrong unit or a wrong position of the surface; empty if they do not.
+    // Warning that distances or sizes suggest a wrong unit or a wrong position of the surface; empty if they do not.
     std::string warning{};
 };
 

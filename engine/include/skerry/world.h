@@ -47,10 +47,10 @@ public:
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
 
-    // Copies and files; allowed between calls of advance (docs/save_restore.md). A copy continues exactly like this
-    // world, bit by bit, on any number of threads. Handles of this world name the same objects in the copy, and the
-    // report() of the copy covers the whole run, including the steps of this world. Not copied are the functions of
-    // watch_steps() and watch_contact_problems(), recorded traces and the computing times of stages.
+    // Copies and files. These functions are allowed between calls of advance (docs/save_restore.md). A copy continues
+    // exactly like this world, bit by bit, on any number of threads. Handles of this world name the same objects in the
+    // copy. The report() of the copy covers the whole run, including the steps of this world. The copy does not get the
+    // functions of watch_steps() and watch_contact_problems(), recorded traces, and the computing times of stages.
     /// Returns a copy of this world.
     World clone(const LoadSettings& settings = {}) const;
     /// Saves the world. The file is written under another name and then renamed, so an existing file is replaced
@@ -92,18 +92,19 @@ public:
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
     /// follow `motion`. A constant angular velocity rotates the nodes about the point `pivot` [m]. Keys of a motion are
-    /// poses, at absolute times, of a frame to which the nodes are attached in its present pose. For a rigid or
-    /// implicit body at least three nodes that are not on one line are required. They hold the whole rigid body, or the
-    /// frame of the implicit body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
+    /// poses of a frame at absolute times. The nodes move rigidly with this frame, beginning at its pose at the present
+    /// time. For a rigid or implicit body at least three nodes that are not on one line are required. They hold the
+    /// whole rigid body, or the frame of the implicit body. A body that `automatic` made implicit first becomes
+    /// explicit, as by set_dynamics().
     ///
     /// `directions`: the nodes are held along these directions only, and are free normal to them (a roller support).
     /// Directions are fixed in the world, of any nonzero length, and perpendicular to each other. Empty: the nodes are
     /// held completely. Directions are only for explicit bodies, and for velocities or keys without rotation. Several
     /// attachments can hold a node if their directions are perpendicular or equal; along equal directions the node
-    /// follows the last attachment. The contact solver keeps held directions together with the contacts, with one
-    /// exception: a contact whose normal lies exactly along a held direction treats the node as free, so that the
-    /// attachment takes up the impulse and the other object is not stopped. Hold nodes completely where objects press
-    /// on them in this way (docs/methods/sets_and_rollers.md).
+    /// follows the last attachment. The contact solver satisfies held directions and contacts together, with one
+    /// exception: a contact whose normal lies exactly along a held direction treats the node as free. The contact
+    /// impulse is then too small to stop the other object, and the attachment takes up this impulse. Hold nodes
+    /// completely where objects press on them in this way (docs/methods/sets_and_rollers.md).
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
     /// Removes an object, and with it the joints, ties and other objects that name it.
@@ -149,11 +150,11 @@ public:
     std::span<const Vec3> velocities(BodyHandle body) const;                  // velocities of the nodes [m/s]
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // node numbers of tetrahedra
-    /// Cauchy stress and Green strain of a body, by tetrahedron or by node. The stress does not include the relaxing
-    /// part of the viscous stress. The value of a tetrahedron is the mean over the finite elements that cover it. The
-    /// value of a node is recovered from the elements around the node, and from the traction on the surface
-    /// (docs/methods/elasticity.md 7.9). At an interface of two materials the stress jumps, and a node has the mean of
-    /// the stresses of both sides.
+    /// Cauchy stress and Green strain of a body, by tetrahedron or by node. The stress is that of the material law
+    /// alone, without the viscous stress (`loss_factor`, `bulk_viscosity`). The value of a tetrahedron is the mean over
+    /// the finite elements that cover it. The value of a node is recovered from the elements around the node, and from
+    /// the traction on the surface (docs/methods/elasticity.md 7.9). At an interface of two materials the stress jumps,
+    /// and a node has the mean of the stresses of both sides.
     std::vector<Mat3> stress(BodyHandle body) const;       // Cauchy stress by tetrahedron [Pa]
     std::vector<Mat3> strain(BodyHandle body) const;       // Green strain by tetrahedron
     std::vector<Mat3> node_stress(BodyHandle body) const;  // Cauchy stress by node [Pa]
@@ -169,8 +170,9 @@ public:
     std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // three by node, the largest first [Pa]
     /// Longest step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest
     /// element that covers the tetrahedron. The shortest of these steps is the stable step of an undeformed body. The
-    /// stable step of a strained body can be longer than that, because elements at the same node share its mass. To
-    /// lengthen the stable step of a body, repair its tetrahedra with the shortest steps.
+    /// stable step of a strained body can be longer: elements at the same node share its mass, and less stiff elements
+    /// can leave more of it to a stiff one. To lengthen the stable step of a body, repair its tetrahedra with the
+    /// shortest steps.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     /// Name of a body (BodySettings::name).
     const std::string& name(BodyHandle body) const;
@@ -229,9 +231,10 @@ public:
     void move_to(ColliderHandle collider, const Pose& pose, Real duration);
     void move_to(AttachmentHandle attachment, const Pose& pose, Real duration);
     /// Puts a collider or an attachment at another pose at once. Objects on the way are neither pushed nor detected.
-    /// Constant velocities continue from the new pose; keys and targets are dropped. Settings::start_overlaps applies
-    /// to new overlaps. Only the attached nodes jump, so an explicit body is deformed; throws SceneError if an element
-    /// would be inverted. If the attachment holds a rigid body or the frame of an implicit body, the whole body moves.
+    /// Constant velocities continue from the new pose; keys of a motion and targets of move_to() are dropped.
+    /// Settings::start_overlaps applies to new overlaps. Only the attached nodes jump, so an explicit body is deformed;
+    /// throws SceneError if an element would be inverted. If the attachment holds a rigid body or the frame of an
+    /// implicit body, the whole body moves.
     void set_pose(ColliderHandle collider, const Pose& pose);
     void set_pose(AttachmentHandle attachment, const Pose& pose);
     /// Sets the positions of all nodes of a body, one vector per node [m, world frame]. Velocities do not change, and
@@ -265,8 +268,9 @@ public:
     void reset();
     /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
     /// stay valid; handles of objects that were added to this world after the cloning become stale. However, if objects
-    /// were added to `saved` as well, a handle of the second kind may name one of these objects by mistake. Threads and
-    /// callbacks of this world stay. From now on forces are measured if `saved` measures forces, and otherwise not.
+    /// were added to `saved` as well, the handle of an object added to this world may name one of these objects by
+    /// mistake. Threads and callbacks of this world stay. From now on forces are measured if `saved` measures forces,
+    /// and otherwise not.
     void reset(const World& saved);
     /// Sets the external forces on all nodes of a body, one vector per node [N]. They act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
@@ -276,8 +280,9 @@ public:
     /// Replaces the settings of a material. Bodies of this material keep their shapes and velocities and get new
     /// masses, stable steps and clusters. Elements added as `smoothed` keep the kind that Poisson's ratio determined
     /// when their body was added. Throws SceneError if the material model would change, if plasticity would appear or
-    /// vanish, or if a body of this material would have no stable step. Also throws if an implicit body would get a
-    /// loss factor above 0, and for elastic values, density or losses if a body has deformed plastically.
+    /// vanish, if a body of this material would have no stable step, or if an implicit body would get a loss factor
+    /// above 0. If a body of this material has deformed plastically, also throws if elastic values, density or losses
+    /// would change.
     void set_material(MaterialHandle material, const MaterialSettings& settings);
     std::vector<MaterialHandle> materials() const;   // handles in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material
@@ -320,8 +325,8 @@ public:
     /// Contacts of the last step and contacts between sleeping bodies, in a fixed order. Contacts of objects that were
     /// removed since are omitted. Empty if the last step was refused.
     std::span<const Contact> contacts() const;
-    /// Counters of the run and measures of the present state. Each call computes the measures from all bodies and
-    /// elements, which takes time.
+    /// Counters of the run, and values of the present state such as momentum and energy. Each call computes these
+    /// values from all bodies and elements, which takes time.
     WorldReport report() const;
     /// Kinetic, elastic and potential energy of all bodies now, and the energy dissipated since the start [J].
     Energy energy() const;

@@ -10,7 +10,7 @@ namespace skerry::mesh {
 /// A keyword line such as "*ELEMENT, TYPE=C3D4, ELSET=BEAM", and the place of the data lines that follow it.
 struct AbaqusBlock {
     std::string keyword;                           // upper case, without the asterisk
-    std::map<std::string, std::string> parameter;  // value by name in upper case; an empty text if none is given
+    std::map<std::string, std::string> parameter;  // values by names in upper case; a parameter without value has ""
     std::size_t place = 0;                         // position of the keyword line in the file [bytes]
     std::size_t first = 0, end = 0;                // begin and end of its data lines in the file [bytes]
 

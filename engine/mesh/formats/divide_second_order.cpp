@@ -29,7 +29,8 @@ void add_parts(const std::vector<Vec3>& nodes, const std::array<Index, 4>& corne
     parts.insert(parts.end(), std::begin(at_corners), std::end(at_corners));
     struct Diagonal {
         Index first, last;
-        // Both ends of the diagonal and two successive nodes of this ring form a tetrahedron of positive volume.
+        // The other four nodes, as a ring around the diagonal. Both ends of the diagonal and two successive nodes of
+        // the ring form a tetrahedron of positive volume.
         std::array<Index, 4> around;
     };
     const std::array<Diagonal, 3> diagonals{

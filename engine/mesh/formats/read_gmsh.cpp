@@ -155,7 +155,7 @@ void label(GmshMesh& mesh) {
     const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
     std::vector<int> labels;
     for (const GmshTags& tags : mesh.tags) {
-        // a group with a negative number is the group of the positive number; the sign only reverses the orientation
+        // a negative number means the same group as its absolute value; the sign only reverses the orientation
         const Real tag = static_cast<Real>(grouped ? tags.physical : tags.elementary);
         const std::optional<int> number = as_label(grouped ? std::abs(tag) : tag);
         if (!number) return;

@@ -58,7 +58,7 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
 namespace {
 
 /// Returns the number of the physical group of an element, or nothing if the element is in no group. A negative number
-/// in the file means the group of the positive number; the sign only reverses the orientation.
+/// in the file means the same group as its absolute value; the sign only reverses the orientation.
 std::vector<std::int64_t> group_of(const GmshTags& tags) {
     if (tags.physical == 0) return {};
     return {tags.physical < 0 ? -tags.physical : tags.physical};
@@ -113,7 +113,8 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh
 }
 
 /// Reads a block of a binary file: a header, then elements that all have the type and the number of tags given in the
-/// header. Returns the number of elements.
+/// header. `count`: number of elements of the section. `done`: number of those in earlier blocks. Returns the number of
+/// elements of the block.
 std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers,
                               GmshMesh& mesh) {
     const auto type = reader.binary<std::int32_t>("type");

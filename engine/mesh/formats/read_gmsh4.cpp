@@ -140,8 +140,8 @@ GmshEntities read_gmsh4_entities(FileReader& reader, bool binary) {
                 binary ? void(reader.binary<double>("position")) : void(row_word(reader, "a coordinate"));
             std::vector<std::int64_t> groups = read_tags(reader, binary);
             if (dimension > 0) read_tags(reader, binary);  // skips the tags of the entity's boundary
-            // a group with a negative number is the group of the positive number; the sign only reverses the
-            // orientation
+            // a negative number means the same group as its absolute value; the sign only reverses the orientation of
+            // the group's elements
             for (std::int64_t& group : groups) group = group < 0 ? -group : group;
             if (!groups.empty()) entities[{static_cast<std::int64_t>(dimension), tag}] = std::move(groups);
         }

@@ -278,8 +278,8 @@ private:
         if (keyword == "FIELD") return read_field_data(rows, of_cells);
         if (keyword == "COLOR_SCALARS" || keyword == "LOOKUP_TABLE") {
             const std::size_t count = read_count("count", 1);
-            // skip_array() skips a byte per value in a binary file, and a word per value in a text file, in which a
-            // colour component is a fraction.
+            // A value is a byte in a binary file, and a word in a text file. There a colour component is a fraction
+            // such as 0.5, which does not matter, because skip_array() does not interpret the words.
             return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
                               {NumberKind::uint8, 1});
         }

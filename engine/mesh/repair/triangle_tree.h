@@ -34,8 +34,8 @@ public:
     NearestTriangle nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const;
 
 private:
-    /// Searches the subtree below node `row` of bvh_ for a triangle nearer than `nearest`, which it replaces. `facing`:
-    /// see nearest_facing; nullptr: all triangles are searched.
+    /// Searches the subtree below node `row` of bvh_ for a triangle nearer than `nearest`. If there is one, the nearest
+    /// of them replaces `nearest`. `facing`: see nearest_facing; nullptr: all triangles are searched.
     void search(Index row, const Vec3& point, const Vec3* facing, NearestTriangle& nearest) const;
     bool faces(Index triangle, const Vec3& point, const Vec3& facing) const;
 

@@ -18,8 +18,8 @@ public:
 
     Mesh build() {
         for (const Real up : {-1.0, 1.0}) mesh_.nodes.emplace_back(0, 0, up * half_);
-        // The first nodes are the two centres, then the pole and four nodes of the rim of each end. Users can pick
-        // nodes with these known numbers to show the rotation of the body.
+        // The first nodes are the two centres, then the pole and four nodes of the rim of each end. Their numbers are
+        // fixed, so that users can refer to these nodes, for example to show the rotation of the body.
         for (const int end : {0, 1}) {
             row_[end][caps][0] = add(end, caps, 0);
             for (int k = 0; k < around; k += around / 4) row_[end][0][k] = add(end, 0, k);

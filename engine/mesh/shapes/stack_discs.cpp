@@ -23,10 +23,11 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The nodes are connected as in a
-/// hexagon cut out of the triangular lattice with the axes p and q. In this lattice, (p - q) mod 3 is such a colouring.
-/// The colours determine the diagonals of the rectangular side faces (walls) between neighbouring prisms. All six
-/// sectors of the disc are treated alike, so the mesh does not favour one sense of rotation.
+/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The colours of the two nodes below
+/// the rectangular side face (wall) of a prism determine the diagonal of this wall, so the prisms on both sides of it
+/// agree. The nodes are connected as in a hexagon cut out of the triangular lattice with the axes p and q. In this
+/// lattice, (p - q) mod 3 is such a colouring. All six sectors of the disc are treated alike, so the mesh does not
+/// favour one sense of rotation.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);

@@ -18,8 +18,8 @@ inline constexpr std::string_view other_unit = "probably in another unit of leng
 SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name,
                            bool keep_walls = false);
 
-/// Performs check_surface, but keeps both of two shells that nearly coincide and have the same orientation. Where inner
-/// shells bound voids, two such shells are the sides of a thin wall.
+/// Performs check_surface, but keeps both of two shells that nearly coincide and have the same orientation. Use it if
+/// each inner shell bounds a void, whatever its orientation: two such shells are then the two sides of a thin wall.
 SurfaceReport check_surface_with_walls(const SurfaceMesh& surface, Real tolerance, const std::string& name);
 
 /// Largest distance at which nodes or shells of a surface count as coincident [m].

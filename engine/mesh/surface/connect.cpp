@@ -14,8 +14,10 @@
 namespace skerry::mesh {
 namespace {
 
-/// Divides the given triangles into patches that are connected by edges. Returns true for all triangles of a patch if
-/// an odd number of triangles of the surface, not counting `dropped` ones, meet at an edge of the patch.
+/// Finds given triangles that cannot lie where two closed shells touch, because there an even number of triangles meet
+/// at each edge. Divides the triangles for which `given` is true into patches that are connected by edges. Returns true
+/// for all triangles of a patch if one of its edges has an odd number of triangles of the surface, not counting
+/// `dropped` ones.
 std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
     UnionFind patches;
     patches.start(triangles.size());
@@ -86,8 +88,8 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
 }
 
 /// Handles an edge with four or more triangles, at which several solids touch. Finds the two triangles that bound each
-/// solid there, and calls visit(a, b) with their sides. Half of the sides must lead in each direction. Returns true if
-/// solids overlap at the edge.
+/// solid there, and calls visit(a, b) with the sides (Side) of these two triangles at the edge. Half of all sides at
+/// the edge must lead from one end to the other, and half of them back. Returns true if solids overlap at the edge.
 bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto&& visit) {
     const auto at = [&](Index n) -> const Vec3& { return surface.nodes[static_cast<std::size_t>(n)]; };
     const Vec3 &low = at(edge[0].node[0]), along = (at(edge[0].node[1]) - low).normalized();
@@ -114,7 +116,9 @@ bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto
     std::vector<std::size_t> open;
     bool overlap = false;
     std::vector<bool> paired(edge.size(), false);
-    for (std::size_t i = 0; i < 2 * by_angle.size(); ++i) {  // two turns, as a volume across angle 0 ends in the second
+    // Goes around the edge twice: a solid that contains the direction of angle 0 opens in the first turn and is closed
+    // in the second.
+    for (std::size_t i = 0; i < 2 * by_angle.size(); ++i) {
         const SideAngle& here = by_angle[i % by_angle.size()];
         if (paired[here.side]) continue;
         if (here.opens && i < by_angle.size()) open.push_back(here.side);

@@ -5,10 +5,11 @@
 
 namespace skerry::mesh {
 
-/// Drops triangles with the same nodes as an earlier triangle. A repeated triangle of opposite orientation is kept if
-/// it belongs to a patch where two closed shells touch. In such a patch, an even number of triangles meet at each edge.
-/// Returns one entry for each remaining triangle: the number (see SurfaceReport::number) of the first dropped triangle
-/// that repeated it, or no_index.
+/// Drops triangles with the same nodes as an earlier triangle, if they have its orientation. Triangles of opposite
+/// orientation can also be right, where two closed shells touch. They are divided into patches that are connected by
+/// edges. A patch is kept if an even number of triangles of the surface meet at each of its edges, as in closed shells;
+/// otherwise it is dropped. Returns one entry for each remaining triangle: the number (see SurfaceReport::number) of
+/// the first dropped triangle that repeated it, or no_index.
 std::vector<Index> drop_duplicates(SurfaceReport& report);
 
 /// Turns triangles of `report.cleaned` so that triangles connected by edges have the orientation that most of them

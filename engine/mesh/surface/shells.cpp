@@ -148,8 +148,9 @@ private:
     std::vector<Index> passed_;  // shells whose triangles the ray of the present point crosses
 };
 
-/// A group of triangles of one shell, given by its size and its first triangle. The points just behind these triangles
-/// lie in the same other shells. The key of SurroundedTriangles is the shell and the list of these other shells.
+/// Triangles of one shell for which the points just inside the shell lie in the same other shells; given by their
+/// number `count` and the first of them. The key of SurroundedTriangles is the shell and the list of these other
+/// shells.
 struct Surrounded {
     std::size_t count = 0;
     Index first = no_index;
@@ -267,7 +268,7 @@ void compare_shells(SurfaceReport& report) {
         return report.shells[static_cast<std::size_t>(shell)].volume > 0 ? 1 : -1;
     };
     for (const auto& [key, group] : surrounded) {
-        int volumes = sign_of(key.first);  // solids that contain the points behind the triangles; a void: -1
+        int volumes = sign_of(key.first);  // number of solids that contain the points behind the triangles, minus voids
         for (const Index other : key.second) volumes += sign_of(other);
         if (volumes > 1 || (volumes < 0 && !key.second.empty()))
             add_fault(report, SurfaceFaultKind::doubled_volumes, group.first).count += group.count - 1;

@@ -8,8 +8,9 @@
 namespace skerry::mesh {
 namespace {
 
-/// Joins nodes that are up to `distance` apart. The nodes are sorted along a direction that is not normal to the planes
-/// of usual grids. Only nodes within `distance` of each other in this direction are compared, and these are few.
+/// Joins nodes that are up to `distance` apart. Only nodes within `distance` of each other along a fixed direction are
+/// compared. Few nodes are, because this direction is not normal to the planes of usual grids; all nodes of a plane
+/// normal to it would be compared with each other.
 void join_close_nodes(std::span<const Vec3> nodes, Real distance, UnionFind& joined) {
     const Vec3 direction(0.41, 0.57, 0.71205);
     std::vector<std::pair<Real, Index>> along;

@@ -7,13 +7,14 @@ namespace skerry::mesh {
 
 namespace {
 
-// Ratio of the true to the computed excess of the bending energy. Excess: energy of the elements minus the exact
-// energy. The computed excess is too large, because it puts the nodes at the positions of exact bending, while free
-// nodes find a state of lower energy. In static solutions of strips of one or two layers of cells the ratio is 0.65 to
-// 1; it is smallest for strips that are two flat cells wide.
+// Ratio of the true to the computed excess, where the excess is the bending energy of the elements minus the exact
+// energy. The computed excess is too large: it puts the nodes at the positions of exact bending, while free nodes find
+// a state of lower energy. In static solutions of strips of one or two layers of cells the ratio is 0.65 to 1; it is
+// smallest for strips that are two flat cells wide.
 constexpr Real remaining_excess = 0.8;
 
-/// Displacements of pure bending (Saint-Venant) with a curvature of 1 per metre. The neutral axis crosses the column.
+/// Displacements of pure bending (Saint-Venant) with a curvature of 1 per metre. The neutral axis crosses the column,
+/// which leads through the thickness of the part (ThinColumn).
 struct Bending {
     std::size_t part, column;
     Vec3 middle;                   // point on the neutral axis [m]
@@ -147,9 +148,9 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
         }
     });
 
-    // The bending moment is about the same in all columns, so each column bends in proportion to its compliance
-    // (exact/found). Therefore the mean over a part is taken of the compliances, weighted by exact energy. A mean of
-    // the stiffnesses would be dominated by a few slivers.
+    // Mean over each part. The bending moment is about the same in all columns, so the curvature of a column is
+    // proportional to its compliance (exact/found). Therefore the compliances are averaged, weighted by exact energy. A
+    // mean of the stiffnesses would be dominated by a few slivers.
     std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!(exact[c] > 0)) continue;

@@ -211,8 +211,8 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Vec3& node = visual.surface.nodes[i];
         const MaterialPoint& point = visual.point.emplace_back(shape.nearest(node, normals[i]));
-        // Only for a point on the boundary does RestShape::nearest return the first node twice. A node inside the body
-        // gets the offset zero, not a rounding error.
+        // RestShape::nearest returns the first node twice for a point outside of the body, and only then. A node inside
+        // the body gets the offset zero, not a rounding error.
         const bool is_inside = point.node[3] != point.node[0];
         visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(node - position_of(point, nodes)));
         const Real distance = visual.offset.back().norm();

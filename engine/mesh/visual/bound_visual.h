@@ -20,10 +20,10 @@ struct GradientTerm {
 
 /// A visual surface, each node of which follows a material point p of the body. The position of the node is p + F d. F:
 /// deformation gradient at p. d: offset of the node from p at rest. At rest, p is the point of the body nearest to the
-/// node. For a node outside of a deformable body, boundary triangles that face the same way as the surface are
-/// preferred if one is near. F is interpolated between nodes of the body. At a node it is the mean over the adjacent
-/// tetrahedra, weighted by volume. For a rigid body F comes from one tetrahedron of nodes that are far apart. All node
-/// numbers are local to the body.
+/// node. But if the node is outside of a deformable body, and boundary triangles that face the same way as the visual
+/// surface are near, p is the nearest point of these triangles. F at p is interpolated between nodes of the body. At a
+/// node of the body, F is the mean over the adjacent tetrahedra, weighted by volume. For a rigid body F comes from one
+/// tetrahedron of nodes that are far apart. All node numbers are local to the body.
 struct BoundVisual {
     VisualSurface surface;
     VisualFit fit;

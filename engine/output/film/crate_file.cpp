@@ -169,8 +169,9 @@ CrateValue CrateFile::times(std::span<const double> times) {
 CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue> values) {
     align();
     const CrateValue value = stored(CrateType::time_samples, size_);
-    // The format has an offset before the times and one before the values, so that the data can stand between offset
-    // and value. Here the data are stored elsewhere, and each offset only skips its own 8 bytes.
+    // The format has an offset before the times and one before the values. The offset is the distance from itself to
+    // the entry that it belongs to, so that data can stand between the two. Here the data are stored elsewhere, and
+    // each offset only skips its own 8 bytes.
     constexpr auto next = static_cast<std::int64_t>(sizeof(std::int64_t));
     put(next);
     put(times);

@@ -80,8 +80,8 @@ public:
     }
     CrateValue token_array(std::span<const std::string> texts);
     CrateValue token_vector(std::span<const std::string> texts);
-    /// Returns an edit of a list in USD: it puts one token before the list of weaker layers (files with lower
-    /// priority).
+    /// Returns an edit of a list in USD: one token is put before the items that weaker layers (files with lower
+    /// priority) give to the list.
     CrateValue prepended_token(std::string_view text);
     /// Returns an edit of a list in USD that sets the path to which a relationship or a connection points.
     CrateValue target(std::string_view path);

@@ -271,7 +271,7 @@ void UsdFilm::put_materials(Object& object, const VisualSurface& surface) {
 /// Hides an object in the frames before it was added and after it was removed. Blender ignores animated visibility, so
 /// the object is also scaled to the size zero in these frames.
 void UsdFilm::put_presence(const Object& object, CrateSpec& mesh) {
-    constexpr double before = 1e-3;  // duration of a change of size, because USD interpolates sizes [frame steps]
+    constexpr double before = 1e-3;  // time between old and new size, as USD interpolates sizes [frame steps]
     std::vector<double> times;
     std::vector<bool> present;
     const auto switch_at = [&](double time, bool shown_before, bool shown_after) {

@@ -9,8 +9,9 @@
 
 namespace skerry {
 
-/// Histogram of positive values with bins that are 2 % wide. The upper end of a legend is a quantile, which includes
-/// nearly all values, so that a single extreme value does not stretch the legend.
+/// Histogram of positive values with bins that are 2 % wide (the upper end of a bin is 2 % above its lower end). Its
+/// quantile, which includes nearly all values, serves as the upper end of a legend, so that a single extreme value does
+/// not stretch the legend.
 class Quantile {
 public:
     void add(Real value) {

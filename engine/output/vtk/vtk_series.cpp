@@ -143,8 +143,8 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         list(3, frame_file("lines", ".vtp"));
         list(4, frame_file("visual", ".vtp"));
     }
-    // Stores the present poses of the colliders. Later frames then refer to the last file of colliders until a collider
-    // moves.
+    // colliders_changed() is called for its side effect: it stores the poses of the colliders in this frame. Later
+    // frames then refer to the last file of colliders until a collider moves.
     if (!colliders_file_.empty()) colliders_changed(now);
 }
 

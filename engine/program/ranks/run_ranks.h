@@ -60,8 +60,8 @@ public:
     /// and read the same files. `scene`: scene file. `assignments`: changes of the scene by --set.
     void compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments);
     /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if one of them has failed
-    /// before or has received a signal. The run must not start after a signal: it may have interrupted the search of
-    /// rank 0 for a static equilibrium.
+    /// before or has received a signal. The run must not start after a signal, because the signal may have interrupted
+    /// rank 0 in its search for a static equilibrium.
     Json of_first(const Json& mine) const;
     /// Returns `asked` with two changes: the number of threads is that of the launcher if `asked` has none, and ranks
     /// other than 0 print no messages. Throws SceneError for outputs that several ranks cannot write.
@@ -87,18 +87,19 @@ public:
     /// Sets the text that rank 0 writes to standard error if the launcher ends the job by a signal, as it does when
     /// another rank has failed.
     void set_last_words(std::string text);
-    /// Handles an error that ended the run of this rank, and returns the exit code. Before divide() the ranks compare
-    /// their errors, and rank 0 reports. After divide() the other ranks do not check for errors, so this function ends
-    /// all processes. If MPI does not connect the processes, the first one reports its error. The others return
-    /// success, because the launcher ends all processes once one of them fails, even before the first one has reported.
+    /// Handles an error that ended the run of this rank, and returns the exit code.
+    /// - Before divide(), the ranks compare their errors, and rank 0 reports.
+    /// - After divide(), the other ranks do not check for errors, so this function ends all processes.
+    /// - If MPI does not connect the processes, the first one reports its error. The others return success: once one of
+    ///   them fails, the launcher ends all processes, possibly before the first one has reported.
     int fail(const std::exception& error);
     /// Collective. Returns the largest exit code of all ranks.
     int last_code(int mine) const;
 
 private:
     explicit RunRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
-    /// Collective. Returns the arguments `mine` of all ranks. Throws AgreedError if one of these has a key "error" or a
-    /// signal, or if the values of their keys "alike" differ.
+    /// Collective. Returns the JSON objects `mine` of all ranks. Throws AgreedError if one of them has a key "error" or
+    /// a nonzero value of the key "signal", or if their values of the key "alike" differ.
     std::vector<Json> agree(const Json& mine) const;
 
     std::unique_ptr<Ranks> ranks_;  // null in a run of one process

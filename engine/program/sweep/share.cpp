@@ -70,8 +70,9 @@ Share array_share(const Variables& variables) {
 
 Share task_share(const Environment& environment) {
     const Variables variables(environment);
-    // The launcher of this process is the first one in this list whose variables are set. A launcher that may be
-    // started by another one stands before it, because the process then has the variables of both.
+    // The launcher of this process is the first one in this list whose variables are set. A launcher stands before
+    // those that may start it: a process that mpirun starts in a Slurm job has the variables of both, and its launcher
+    // is mpirun.
     struct Launcher {
         const char *rank, *of;
     };

@@ -111,8 +111,8 @@ void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none(),
              nb::arg("take").none(), nb::arg("every"))
         .def("relax", &relax_world)
-        // World::watch_steps() is called only because it throws during advance(). At other times it removes the
-        // registered function, but outside of WatchScope none is registered.
+        // World::watch_steps() is called here because it throws during advance(). It also removes the registered
+        // function, but outside of advance() none is registered (see WatchScope).
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))
         .def("trace_text", guarded([](World& world) {

@@ -9,8 +9,8 @@
 namespace skerry {
 
 /// Two runs agree on a column while their difference is at most this share of the column's scale (column_scales()). The
-/// share is above 1e-4 for this reason: contacts between faces can at once increase a perturbation to 1e-4 of the
-/// scale, but do not let it grow further.
+/// share must exceed 1e-4: contacts between faces can suddenly increase a perturbation to 1e-4 of the scale, but do not
+/// let it grow further.
 inline constexpr Real agreement_share = 1e-3;
 
 /// An unperturbed run, and runs whose starts differ from its start by a perturbation. All have the same columns and

@@ -18,7 +18,8 @@ struct Option {
 
 /// Error and cost are predicted for this number of mesh levels beyond the finest one of the runs.
 constexpr int finer_levels = 2;
-// ratio of the CPU times of two levels: 8 x elements, 2 x steps; used if no ratio was measured
+// CPU time of a mesh level divided by that of the next coarser level: 8 x elements, 2 x steps; used if no ratio was
+// measured
 constexpr double cost_of_level = 16;
 
 std::vector<Option> mesh_options(const StudyFamily& family) {
@@ -65,7 +66,8 @@ bool counts(const MeasuredQuantity& quantity) {
 struct Prediction {
     CheapestSettings settings;
     std::string worst{};
-    // number of quantities with at most the wanted error, and of all for which counts() is true
+    // `within`: number of quantities whose error is at most the wanted error. `counted`: number of quantities with an
+    // error, that is, for which counts() is true.
     std::size_t within = 0, counted = 0;
     // true if these settings may be proposed when no settings reach the wanted error
     bool may_be_nearest = true;

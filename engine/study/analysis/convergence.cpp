@@ -42,8 +42,9 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     const auto be_coarse = [&] {
         shape_ = ConvergenceShape::coarse;
         used_order_ = 0;
-        // The error may be as large as the value itself. A position, however, may contain a large constant part, which
-        // has no error. Its error is at most `size`, the size of its change, plus the difference of the levels.
+        // The error may be as large as the value itself. For a position it may be smaller, because a position can
+        // contain a large constant part without an error. The error is then at most `size`, the size of the position's
+        // change, plus the difference of the levels.
         least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
     };
     const bool differs_much = std::abs(difference) > coarse_share * size;
@@ -60,7 +61,7 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
         // Successive differences have opposite signs if two terms of the error do, such as a h^2 and b h^3 with a b <
-        // 0. The estimate with order 1 is kept here, because it is above such an error.
+        // 0. `remainder_` keeps the estimate with order 1, because it is above such an error.
     } else if (order_ < near_least * theory.least) {
         // An order near 0 predicts an unbounded error, so the estimate is limited to the sum of both differences.
         shape_ = ConvergenceShape::slow;
@@ -70,7 +71,7 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         if (order_ > 0 || !differs_much) return;
         // Meshes that lock (are far too stiff), such as a single layer of linear elements, change the value more from
         // level to level until they are fine enough. The bound assumes that the difference grows once more, by at most
-        // the last factor, and falls after that.
+        // the ratio of the last two differences, and falls with order `theory.least` after that.
         be_coarse();
         const Real growth = std::min(std::abs(difference / coarse_difference), std::pow(ratio, theory.most));
         remainder_ = std::max(remainder_, growth * (std::abs(difference) + remainder(theory.least)));

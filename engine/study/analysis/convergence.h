@@ -22,12 +22,12 @@ struct TheoryOrder {
 
 /// Behaviour of the differences between successive levels.
 /// - unmeasured: there is only one level, or no level with h = 1.
-/// - two_levels: two levels give a difference and no order, nor do three levels without a constant ratio of h.
+/// - two_levels: there are two levels, or three without a constant ratio of h. Their differences give no order.
 /// - coarse: two levels differ so much that both have large errors, and no third level shows that the differences
 ///   decrease.
 /// - regular: the observed order is near that of the theory.
 /// - equal: the finest two levels do not differ by more than the noise, which is the size of differences without
-///   meaning.
+///   meaning, for example of rounding errors.
 /// - slow: the observed order is far below that of the theory, or the differences grow.
 /// - fast: the observed order is far above that of the theory, so the coarse levels do not converge with the order of
 ///   the theory yet.
@@ -47,7 +47,9 @@ public:
     ConvergenceShape shape() const { return shape_; }
     /// Observed order; NaN unless three levels with a constant ratio of h differ by more than the noise.
     Real order() const { return order_; }
-    /// True if the differences do not follow any order of convergence that the theory predicts.
+    /// Error bound of the value at `h`. For h below the finest level the bound is predicted with the order of
+    /// convergence; for the shapes coarse, slow and oscillating the bound of the finest level is returned. NaN if h
+    /// lies between or above the levels, or if the error is unmeasured.
     bool irregular() const;
     /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
     Real error() const { return error_at(1); }

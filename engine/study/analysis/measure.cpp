@@ -12,7 +12,9 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real matters = 0.2;  // fraction of the error bar; irregular parts of the error below it are ignored
+// Fraction of the error bar. A part of the error (from the mesh, the steps or the contacts) that does not decrease
+// regularly from run to run is ignored below this fraction.
+constexpr Real matters = 0.2;
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -76,7 +78,7 @@ bool is_contact(const StudyVariant& v) {
 
 /// Growth of a stress figure, such as the largest value of a column, from mesh to mesh.
 struct StressGrowth {
-    // exponents a of growth h^-a with the edge length h, between successive meshes, coarse to fine
+    // exponents a with which the stress grows, as h^-a with the edge length h, from each mesh to the next finer one
     std::vector<Real> rates{};
     bool same_place = false;  // true if the two finest meshes have their largest stress near one place
 
@@ -219,7 +221,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     if (std::isnan(r.contact))
         return decide(StudyVerdict::not_measured,
                       "the contact error is unknown, because no run with another tolerance has a result");
-    // fraction of the wanted error; irregular parts of the error below it are ignored
+    // fraction of the wanted error; an irregular part of the error (see `matters`) below it is ignored, too
     constexpr Real share_of_wanted = 0.1;
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
@@ -272,7 +274,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
     constexpr Real rounding = 1e-9;  // assumed upper limit of the rounding errors of a run, divided by the scale
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
-    // errors of the solver are noise here, too
+    // in the mesh and step errors, differences up to the error of the contact solver are noise, too
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());
     quantity.mesh = Convergence(mesh, mesh_theory(series), noise, family.sizes[column]);
     quantity.step = Convergence(step, step_theory(*family.scene), noise, family.sizes[column]);
@@ -286,8 +288,9 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
-    // Flat faces cause an error of the change of a length since the start, but not of its constant part. The error is
-    // therefore relative to at most the size of the column, which is the largest change.
+    // Flat faces cause an error of the change of a length since the start, but not of the constant part of the length.
+    // The error is therefore a share of the size of the column (the largest change since the start), or of the value if
+    // it is smaller.
     quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
     r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);

@@ -16,7 +16,7 @@ struct QuantityText {
     std::string value, error, unit;  // error: empty if unknown, or if the value is "zero within" a number
     std::string parts;               // parts of the error, for example "mesh 2.6, step 0.1"; empty if zero or unknown
     std::string best, best_error;    // extrapolated value and its error; empty if unknown
-    // error divided by StudyQuantity::scale [%]; also contains the scale, if it differs from the value
+    // error divided by StudyQuantity::scale [%]; also names the scale, unless it is close to the value
     std::string share;
     std::string orders;  // for example "order 1.9 (2 expected)"; empty if unknown
 };

@@ -38,8 +38,8 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
     return directions.size() == 3 ? Mat3(Mat3::Identity()) : held;
 }
 
-/// Throws SceneError if nodes cannot be held along single directions: the body is not explicit, or another attachment
-/// holds one of the nodes along a direction that is neither perpendicular nor parallel to these directions.
+/// Throws SceneError if nodes cannot be held along the directions `held`: the body is not explicit, or another
+/// attachment holds one of the nodes along a direction that is neither perpendicular nor parallel to these directions.
 void require_axes(const Model& model, std::size_t body, std::span<const Index> nodes, const Mat3& held) {
     const std::string& name = model.body_records[body].name;
     if (model.has_frame(body))

@@ -86,7 +86,8 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
-        // The origin of BodyTable::displacement moves along, so that the measured displacement does not change.
+        // The point from which BodyTable::displacement is measured moves by as much as the node, so the displacement
+        // does not change.
         origin[n] += position[n] - target[n];
         target[n] = position[n];
     }

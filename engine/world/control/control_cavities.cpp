@@ -105,8 +105,9 @@ std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::
     return faces;
 }
 
-/// Returns an edge that shows that the faces do not form a closed surface: the faces at this edge pass it more often in
-/// one direction than in the other. Returns {no_index, no_index} if there is no such edge.
+/// Returns an edge that shows that the faces do not form a closed surface, or {no_index, no_index} if there is none. In
+/// a closed surface an edge is passed by equally many faces in each direction; at the returned edge these numbers
+/// differ.
 std::pair<Index, Index> open_edge(const std::vector<Face>& faces) {
     std::map<std::pair<Index, Index>, int> sum;
     for (const Face& face : faces)

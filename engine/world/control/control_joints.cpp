@@ -180,7 +180,8 @@ bool parted_elsewhere(const JointTable& table, std::size_t joint) {
 }
 
 /// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset. The
-/// leader can mimic a further joint. OfHead relates a joint in this way to its head, the last joint of this chain.
+/// leader can mimic a further joint; the last joint of this chain is the head. OfHead gives the coordinate of a joint
+/// by that of its head: ratio * (coordinate of the head) + offset.
 struct OfHead {
     Index head;
     Real ratio = 1, offset = 0;

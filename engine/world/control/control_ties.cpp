@@ -197,8 +197,9 @@ void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& r
     table.broken.push_back(infinity);
 }
 
-/// Appends a tied node. `point`: element of tied_points() for the node [m]. If the node is tied to a deformable body,
-/// TieTable::place gets an offset from the nearest surface point, otherwise a position in the frame of the object.
+/// Appends a tied node. `point`: point of the node that is tied, see tied_points() [m]. If the node is tied to a
+/// deformable body, TieTable::place gets an offset from the nearest surface point of this body. Otherwise it gets a
+/// position in the frame of the rigid body or collider, or in the world.
 void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
               Index node, const Vec3& point) {
     Model& model = world.model;

@@ -118,7 +118,8 @@ void take_values(Model& target, Model& source) {
 void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
     world.model.settings.sleep = sleep;
     world.model.settings.tolerance = tolerance;
-    // time for which the forces of the last step acted; the contact forces of that step are computed with it [s]
+    // time for which the forces of the last step acted [s]; not reset, because the contact forces of that step are
+    // still computed with it
     const Real kick_time = world.scratch.parameters.kick_time;
     world.scratch.parameters = step_parameters(world.model.settings, world.model.tuning);
     world.scratch.parameters.kick_time = kick_time;
@@ -241,10 +242,10 @@ private:
         for (const BodyBalance& balance : bodies_) largest_ = std::max(largest_, balance.out_of_balance);
     }
 
-    /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual
-    /// (out-of-balance force divided by forces). A body is in balance if its residual is at most the tolerance. It is
-    /// slow if its momentum is at most tolerance * forces * `time`. `time`: time for which all bodies have been in
-    /// balance [s]. Without weights, loads and contacts, `largest_` replaces the forces.
+    /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual. F:
+    /// BodyBalance::forces of a body, or `largest_` if neither weight, loads nor contacts act on it [N]. A body is in
+    /// balance if its residual, the out-of-balance force divided by F, is at most the tolerance. It is slow if its
+    /// momentum is at most tolerance * F * `time`. `time`: time for which all bodies have been in balance [s].
     bool find_worst(Real time, RelaxReport& report) const {
         report.residual = report.speed = 0;
         report.worst.reset();
@@ -282,8 +283,10 @@ private:
     UnionFind sets_;                     // sets of bodies that joints, ties and the like connect
     std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;    // by body
-    std::vector<Real> kinetic_, sum_{};  // kinetic energies before and after this step, by root of a set [J]
-    Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
+    // Kinetic energies of the sets of joined bodies, at the index of the root of a set in `sets_` [J]: kinetic_ before
+    // this step, sum_ after it.
+    std::vector<Real> kinetic_, sum_{};
+    Real largest_ = 0;  // largest out-of-balance force of a body so far [N]
 };
 
 /// Stops everything that is prescribed as a function of time, and wakes all bodies.

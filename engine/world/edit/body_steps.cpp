@@ -192,9 +192,10 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // Mass forms (mass_forms.h) divide the node masses among the elements, to lengthen the stable step. In a large body
-    // their sum is verified for groups of elements instead of the whole body. They then lengthen the stable step less,
-    // or not at all, and are dropped if they do not lengthen it.
+    // Mass forms (mass_forms.h) divide the node masses among the elements, to lengthen the stable step. The sum of the
+    // forms must not exceed the node masses. In a large body this is verified for groups of elements instead of the
+    // whole body. The forms then lengthen the stable step less, or not at all, and are dropped if they do not lengthen
+    // it.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
     // Frame masses (mass shares for a body that rotates as a whole, frame_masses.h) are chosen for linear elements

@@ -17,9 +17,9 @@ constexpr Real ns = 1e-9;  // one nanosecond in seconds; the costs below are in 
 // the output of profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // step_time [ns]
-// Fraction of step_time that is spent on contacts (measured for a cube on a face: a half or more). It is spent in every
-// step of the world: an implicit body may take longer steps than other bodies, but its contacts are solved in each of
-// their steps.
+// Fraction of step_time that is spent on contacts (measured for a cube on a face: a half or more). An implicit body may
+// take longer steps than other bodies, but its contacts are solved in each of the shorter steps of the world. So this
+// part of the cost arises in every step of the world.
 constexpr Real contact_share = 0.5;
 // Cost of the contacts of an implicit body in a pile, divided by the cost of the contacts of a cube on a face. In piles
 // of 27 cubes of 27 to 729 nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
@@ -162,8 +162,8 @@ Index outdated_choice(const Model& model, DynamicsEstimate& updated) {
         updated.deforming_step = std::max(step, model.settings.implicit_step);
         updated.explicit_step = std::min(old.explicit_step, step);
         // The costs in `old` already include the bodies that existed at the first estimate, so `cost_of_all` counts
-        // these bodies twice. Both new costs are thus too large. The error of the explicit cost is the larger one,
-        // because the explicit step is shorter. A body therefore becomes explicit only if this certainly saves time.
+        // these bodies twice. Both new costs are thus too large, the explicit cost by more, because the explicit step
+        // is shorter. This error favours implicit dynamics: a body becomes explicit only if this certainly saves time.
         updated.explicit_cost = (cost_of_all + old.explicit_cost * old.explicit_step) / updated.explicit_step;
         updated.implicit_cost = (cost_of_all + old.implicit_cost * old.implicit_step) / step;
         updated.damped_above = 0;  // an explicit body is not damped by its steps

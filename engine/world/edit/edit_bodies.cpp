@@ -20,8 +20,8 @@ namespace skerry {
 
 namespace {
 
-// Initial value of uninverted_until, with which find_inversions checks all tetrahedra in the next step.
-// uninverted_until: travel of the body up to which no tetrahedron can invert [m].
+// Initial value of uninverted_until, the travel of the body up to which no tetrahedron can invert [m]. With this value
+// find_inversions checks all tetrahedra in the next step.
 constexpr Real not_evaluated = -infinity;
 
 // default contact distance, divided by the mean edge length of the surface; small compared with the mesh resolution
@@ -106,7 +106,7 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-/// Location of a new body in the tables. `places`: SIMD lane of each element in the element blocks. `covered`: for each
+/// Location of a new body in the tables. `places`: element in each SIMD lane of the element blocks. `covered`: for each
 /// lane, the tetrahedra that its element covers.
 struct RowsOfBody {
     Index row;

@@ -137,7 +137,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
 const KnownElements* known_elements(const Model& model, const NewBody& body);
 /// Copies stored results to a new body. This replaces a call of find_steps. The elements must not be rotated yet.
 void take_steps(const KnownElements& known, Index row, Model& model);
-/// Stores the results of find_steps for later bodies with the same mesh. `places`: SIMD lane of each element in the
+/// Stores the results of find_steps for later bodies with the same mesh. `places`: element in each SIMD lane of the
 /// element blocks of the body.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 /// Stores `trial`, computed by choose_dynamics() for the body `row`, for use by later bodies with the same mesh.

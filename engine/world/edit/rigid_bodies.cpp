@@ -48,9 +48,9 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large, the
-/// mark of bodies with large strain (StiffBody::becomes_large). For a free body, also computes the moments of inertia
-/// and the principal axes: at large strain those of the deformed shape, and when large strain ends those of the rest
+/// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large, which
+/// marks bodies with large strain (StiffBody::becomes_large). For a free body with large strain, also computes the
+/// moments of inertia and the principal axes of the deformed shape. When large strain ends, computes those of the rest
 /// shape.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;

@@ -40,8 +40,8 @@ bool rests(const Model& model, Index body) {
 }
 
 /// Force [N], and moment about `moment_point` [N m], with which an attachment balances the elastic forces of an
-/// implicit body at the nodes `held`. If the attachment also holds the frame of the body, the moment includes the
-/// moment of all elastic forces on the frame.
+/// implicit body at the nodes `held`. If the attachment also holds the rotating frame of the body (find_holders), the
+/// result includes the moment that the elastic forces on all nodes exert on this frame.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -112,9 +112,9 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// Initialises the forces of attachments on sleeping bodies, also as sums over one second. An attachment balances all
-/// other forces on its nodes. The elastic part follows from virtual work: from the change of elastic energy when only
-/// these nodes move. `contact_force`: contact force on each node [N].
+/// Initialises the forces of attachments on sleeping bodies, like take_over_rest() as sums over one second. An
+/// attachment balances all other forces on its nodes. The elastic part of these forces follows from virtual work: from
+/// the change of elastic energy when only these nodes move. `contact_force`: contact force on each node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
@@ -275,17 +275,19 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// True if a body was still at the beginning and at the end of the step, so that the forces of the step are those at
-/// rest. In the step that stops a body, contacts also take its momentum. The forces of that step count nevertheless if
-/// the body falls asleep in it, because no others are known.
+/// True if the forces of the step are those on a body at rest: the body was still at the beginning and at the end of
+/// the step. In the step that stops a body, contacts also take its momentum, so their forces are not those at rest.
+/// They count nevertheless if the body falls asleep in this step, because no others are known.
 bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
     const Real still = model.bodies.still_time[body];
     return still > step_.whole_step || (still > 0 && rests(model, static_cast<Index>(body)));
 }
 
-/// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
-/// them, the pair gets the impulse of its mean force over the time for which both were still before they fell asleep.
-/// If a body was awake, the step is added to this time. If a body has moved, the time and its sums restart instead.
+/// Completes the sums of a pair at the end of a step.
+/// - If both bodies were asleep and the step has no contact between them, the pair gets the impulse of its mean force
+///   at rest, which is still / still_seconds.
+/// - If a body was awake but both stayed still, the step is added to still_seconds.
+/// - If a body has moved, `still` and still_seconds are set to zero.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -370,9 +372,10 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        // left out, because the node masses of a rigid body do not give its momentum
+        // rigid bodies are left out, because their node masses do not give their momentum
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
-        // left out, because a drift does not change the velocities of nodes that are held along single directions
+        // attachments along single directions are left out, because a drift does not change the velocities of their
+        // nodes
         if (!holds_completely(model.attachments.held[a])) continue;
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);

@@ -29,9 +29,9 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Values of an object or a pair in one call of advance: the largest of its mean forces in single steps, its number
-    /// of contacts in the last step, and its largest number of contacts in a step. Also contains the sums over the
-    /// present step.
+    /// Values of an object or a pair of objects in one call of advance: the largest mean force of a step, the number of
+    /// contacts in the last step, and the largest number of contacts in a step. Also contains the sums over the present
+    /// step.
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
@@ -48,6 +48,7 @@ public:
     };
     struct PairRow {
         PairKey key{};
+        // number of contacts in the last step that began with a body of the pair awake
         ContactSums sums{};      // sums of contact impulses over the call of advance
         ContactSums still{};     // sums of contact impulses over the time in which both objects were still
         Real still_seconds = 0;  // time over which `still` is summed [s]
@@ -90,8 +91,8 @@ public:
     /// Must be called after a committed step. `rested`: for each body, nonzero if the body was asleep when the step
     /// began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
-    /// Adds the impulses by which attachments change the velocities of held nodes in a drift of leapfrog. Must be
-    /// called after the drift has moved positions by `seconds` [s].
+    /// Adds the impulses by which attachments change the velocities of held nodes in a drift (the part of a leapfrog
+    /// step that moves the positions). Must be called after the drift has moved positions by `seconds` [s].
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
     void forget_body(std::uint32_t slot);
     void forget_collider(std::uint32_t slot);

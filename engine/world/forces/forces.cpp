@@ -30,8 +30,8 @@ void add(const ContactSums& sums, PairSide side, ForceReport& report) {
     report.pressing_impulse += sums.pressing;
 }
 
-/// True if all bodies of a pair sleep. Their forces are then mean values over the time for which both objects were
-/// still.
+/// True if all bodies of a pair sleep. The stored contact forces of the pair are then mean values over the time for
+/// which its two objects were still.
 bool rests(const Model& model, const PairKey& key) {
     const auto asleep = [&](std::uint32_t slot) {
         return model.bodies.asleep[static_cast<std::size_t>(model.body_map.row(model.body_map.handle_of_slot(slot)))] !=
@@ -104,9 +104,10 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
-    // In each step, forces act on implicit bodies for the step length, and on other bodies for
-    // StepParameters::kick_time. If the step length varies in the call, the sums of these two times differ. If both
-    // kinds of bodies touch the collider and the sums differ too much, no mean force on the collider is defined.
+    // The mean force is the impulse divided by the time for which forces act. In each step, they act on implicit bodies
+    // for the step length, and on other bodies for StepParameters::kick_time, which also depends on the length of the
+    // step before. If the step length varies in the call, the sums of these two times differ. If both kinds of bodies
+    // touch the collider and the sums differ too much, no mean force on the collider is defined.
     Real shortest = infinity, longest = 0;
     bool touched = false, awake = false;
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {

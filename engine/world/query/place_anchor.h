@@ -30,8 +30,8 @@ PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::st
 std::string title_of_end(const Model& model, Index body, Index collider);
 std::string title_of_end(const Model& model, const Anchor& anchor);
 
-/// Computes positions and velocities of anchors between steps. Valid until the world changes. The velocities of
-/// colliders are mean values over the last step, like the velocities of nodes.
+/// Computes positions and velocities of anchors between steps. An object of this class is valid until the world
+/// changes. The velocities of colliders are mean values over the last step, like the velocities of nodes.
 class AnchorsBetweenSteps {
 public:
     explicit AnchorsBetweenSteps(const WorldState& world);

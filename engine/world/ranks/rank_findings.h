@@ -14,8 +14,8 @@ namespace skerry {
 /// element, contact and region counts once, although several ranks may hold it. Sums of energy are not included,
 /// because their last digits would depend on the order of the ranks.
 struct RankFindings {
-    // Fault of the first faulty body, in the order of the undivided world (StepVerdict). `fault_value`: size of the
-    // fault.
+    // Fault of the first faulty body, in the order of the undivided world. `fault_value`: StepVerdict::value, the size
+    // of the fault.
     StepFault fault = StepFault::none;
     Index fault_body = nobody;
     Index fault_node = no_index;         // number of the node within the body

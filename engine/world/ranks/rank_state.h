@@ -54,8 +54,9 @@ struct RankSleep {
     // bodies that this rank wakes and other ranks hold too: rows in the undivided world
     Column<Index> woken;
     Column<SetMember> members;  // entries for the sets that this rank has found
-    // `node_of_body`: for each row of the undivided world, a node of `joined` that stands for the body. `node_of_set`:
-    // likewise for each set in the message that is being read. no_index: none yet.
+    // Elements of the union-find `joined`, here called nodes. `node_of_body`: for each row of the undivided world, the
+    // node that stands for the body. `node_of_set`: for each set in the message that is being read, the node that
+    // stands for the set. no_index: none yet.
     Column<Index> node_of_body, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
     UnionFind joined;               // union of the sets that all ranks have found; sets with a common body are joined

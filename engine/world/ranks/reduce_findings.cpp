@@ -132,7 +132,8 @@ void take_findings(const RankFindings& all_findings, const StageFindings& found)
     if (all_findings.fault == StepFault::not_finite) found.verdict.fastest = {};
     found.strained.unsolved = or_none(all_findings.unsolved_body);
     // The findings must equal those of a process that simulates the whole world. That process tests for inversions and
-    // crossings only if no body has a fault, and for crossings only if no candidate list is too short (beyond_lists).
+    // crossings only if no body has a fault. For the test for crossings, moreover, no list of contact candidates
+    // (features that may touch) may be too short (beyond_lists).
     const bool tested = all_findings.fault == StepFault::none;
     found.inversions = tested ? Inversions{all_findings.inversions, or_none(all_findings.inverted_body),
                                            all_findings.inverted_tetrahedron, all_findings.inverts_first}

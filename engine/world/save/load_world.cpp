@@ -127,9 +127,9 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.rebuild_outlines();
     model.derive_all();
     find_holders(model);
-    // Model::forced tells whether force elements (loads, springs and the like) act. If the last one was removed just
-    // before saving, `forced` must stay true in the next step, which counts the work of its last forces. note_forces
-    // keeps `forced` true only if it was true before the call, so it is set here.
+    // Model::forced tells whether force elements (loads, springs and the like) act. It must stay true for one step
+    // after the last of them was removed, because this step counts the work of its last forces. The world may have been
+    // saved before this step. note_forces keeps `forced` true only if it was true before the call, so it is set here.
     model.forced = true;
     note_forces(model);
     model.links_open = true;

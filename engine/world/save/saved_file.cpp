@@ -233,7 +233,8 @@ void renew_checksum(std::span<std::byte> file) {
 
 void require_file_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size) {
     const std::string_view text = text_in(start);
-    constexpr std::size_t most_before_title = 64;  // upper limit; files of versions before 25 begin with the title
+    // Largest number of bytes before the title. Files of versions before 25 begin with the title.
+    constexpr std::size_t most_before_title = 64;
     const std::size_t at = text.substr(0, most_before_title).find(file_title);
     if (at == std::string_view::npos) refuse_file(name, "a file of another kind", "check the path");
     int version = 0;

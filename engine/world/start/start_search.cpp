@@ -100,7 +100,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::overlap_of(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
-    // A depth below this fraction of the margin counts as touching and not as an overlap, as in a step
+    // A depth below the fraction touching_fraction of the margin counts as touching and not as an overlap, as in a step
     // (contact_reach.h).
     if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
     if (pair.is_analytic || model_.bodies.kind[pair.second] != BodyKind::kinematic || has_inside(pair.second))

@@ -60,7 +60,8 @@ private:
     bool collides(const StartPair& pair) const;
     const Solid& solid(Index body);
     Real mean_edge(const StartPair& pair) const;
-    /// Upper bound of the error of a depth by rounding [m]. A smaller depth may be mere contact.
+    /// Upper bound of the error that rounding causes in the depth of an overlap [m]. If the depth is smaller, the
+    /// objects may only touch.
     Real rounding(const StartPair& pair) const;
     /// Returns the shape of a spherical or capsule-shaped body at its shifted position; nullopt for all other bodies.
     std::optional<RoundSolid> round(Index body) const;

@@ -32,8 +32,8 @@ std::shared_ptr<const OwnElements> FieldCache::elements(const std::function<OwnE
 
 std::shared_ptr<const RecoveryPlan> FieldCache::plan(std::span<const Index> nodes,
                                                      const std::function<RecoveryPlan()>& build) const {
-    // Largest number of plans in the cache. Each probe of a body may request its own list of nodes. The limit bounds
-    // the memory if a caller requests another list in each call.
+    // Largest number of plans in the cache. A plan is made for one list of nodes, and each probe of a body may request
+    // its own list. The limit bounds the memory if a caller requests another list in each call.
     constexpr std::size_t most_plans = 64;
     const auto held = data_->lock.hold();
     auto& plans = data_->plans;

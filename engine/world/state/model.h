@@ -81,14 +81,15 @@ struct BodyRecord {
     Ragged<Index> element_tetrahedra;
     bool settled = false;                             // true if settle_start has checked the body for overlaps
     RigidPose start{Vec3::Zero(), Mat3::Identity()};  // pose at which the body was added
-    // Rotation of the elements at rest. It is the rotation that the body had when its elements were built: when the
-    // body was added, or when its dynamics last changed.
+    // Rotation that the body had when its elements were built: when the body was added, or when its dynamics last
+    // changed. The undeformed elements have this rotation.
     Mat3 built = Mat3::Identity();
     // For a rigid body that is frozen in a deformed shape: node positions of the mesh, in the frame of the mesh [m].
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
     std::vector<Vec3> mesh_shape{};
     GivenMass given_mass = GivenMass::none;
-    // for a body added with the dynamics `automatic`: the estimate by which the engine chose
+    // for a body added with the dynamics `automatic`: the estimate from which the engine has chosen the kind of
+    // dynamics
     DynamicsEstimate choice{};
     FieldCache fields{};
 };
@@ -117,12 +118,13 @@ struct LimitsOfRanks {
     Index spinning = no_index;    // row in the undivided world of the body with this speed
     bool has_frames = false;      // true if some body is rigid or implicit
     bool has_implicit = false;    // true if some body is implicit
-    bool has_clusters = false;    // true if some body has clusters
+    bool has_clusters = false;    // true if some body has clusters (groups of nodes that implicit elements couple)
     bool forced = false;          // true if Model::forced is true on some rank
-    // true if forces that depend on motion act on implicit bodies, which then take no long steps
+    // True if forces that depend on motion act on implicit bodies. These then take no long steps, which cover several
+    // steps of the world.
     bool follow_implicit = false;
     bool clusters_grew = false;  // true if Model::clusters_grew is true on some rank
-    // numbers of element blocks and of entries of cluster matrices
+    // sums over all ranks: numbers of element blocks and of entries of cluster matrices
     std::uint64_t element_blocks = 0, cluster_entries = 0;
     // True if stable steps depend on positions, or if joints or ties limit the rotation in a step. reduce_limits must
     // then be called before each step.
@@ -140,8 +142,8 @@ struct Model {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     ElementPatches patches;  // computed by extend_derived
-    // Groups of nodes that implicit elements couple. They are saved with a world and not derived again, because their
-    // matrices depend on the steps in which elements have stiffened.
+    // Groups of nodes that implicit elements couple. They are saved with a world, because they cannot be derived from
+    // its other tables: their matrices depend on the steps in which elements have stiffened.
     NodeClusters clusters;
     RigidBodyTable rigid_bodies;
     ImplicitNodeTable implicit_nodes;
@@ -213,7 +215,8 @@ struct Model {
     bool links_open = false;
     // True if any body is asleep. If it is false, stages do not test each body for sleep. Computed by note_rest.
     bool any_asleep = false;
-    // true if a body is asleep or a led ghost (BodyTable::idle), so that steps compute no forces on it
+    // true if a body is asleep or a led ghost (a copy for which only the owner of the body computes forces), so that
+    // steps compute no forces on it (BodyTable::idle)
     bool any_idle = false;
 
     /// Sets the number of this world, which is a part of all handles of its objects.
@@ -300,8 +303,9 @@ struct Model {
     /// Computes the derived columns of all rows and counts the bodies with loads. Sets velocity_next and push_out of
     /// all nodes to zero.
     void derive_all();
-    /// Builds the clusters again after elements became implicit or explicit: those of all bodies, or of the bodies with
-    /// a nonzero entry of `body_changed`.
+    /// Builds clusters (groups of nodes that implicit elements couple) again after elements became implicit or
+    /// explicit. Without argument, builds those of all bodies; otherwise those of the bodies with a nonzero entry of
+    /// `body_changed`.
     void rebuild_clusters();
     void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
@@ -326,7 +330,8 @@ struct Model {
     /// Returns for each face its row of TriangleTable, or no_index if the surface of the body has no such face.
     /// `faces`: numbers of the three nodes within the body, in any order.
     std::vector<Index> triangles_of(std::size_t body, std::span<const std::array<Index, 3>> faces) const;
-    /// Computes set_of_feature. A feature of several surface sets is assigned to the last of them.
+    /// Computes set_of_feature, which assigns features (triangles, edges and vertices) of surfaces to surface sets. A
+    /// feature of several surface sets is assigned to the last of them.
     void index_surface_sets();
     /// Rebuilds the surfaces and bounding volume hierarchies of all bodies.
     void rebuild_outlines();

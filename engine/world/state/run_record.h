@@ -15,8 +15,9 @@
 
 namespace skerry {
 
-/// Subscription of a user to the contact problems of steps. Without a subscriber, the stage that copies the data of the
-/// problem is skipped.
+/// Subscription of a user to the contact problems of steps: `take` receives the problem of each step with contacts, if
+/// the number of the step is a multiple of `every`. Without a subscriber, the stage that copies the data of the problem
+/// is skipped.
 struct ProblemWatch {
     std::function<void(const StepProblem&)> take;
     std::uint64_t every = 1;
@@ -42,8 +43,8 @@ struct RunRecord {
     // entry ~r instead, with its row r in ContactCache::resting.
     Column<Index> contact_rows;
     bool contact_view_is_current = false;
-    // True if the balance was last checked after a skipped step, and nothing has moved since. Further checks are then
-    // skipped.
+    // True if the balance was last checked after a skipped step (a step in which nothing moves), and nothing has moved
+    // since. Further checks are then skipped.
     bool balance_of_rest = false;
 };
 

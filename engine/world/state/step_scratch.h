@@ -40,7 +40,8 @@ namespace skerry {
 struct StepParameters {
     Real h = 0;          // step length: time by which positions move [s]
     Real kick_time = 0;  // time for which forces act on velocities in this step [s]
-    // estimated upper bound of the length of the next step, for which check_state tests the deformation [s]
+    // Estimated upper bound of the length of the next step. check_state finds elements that deform too fast for a step
+    // of this length [s].
     Real longest = 0;
     Real lag = 0;  // time by which velocities are older than positions when forces begin to act in this step [s]
     // time by which velocities are older than positions when work is measured: `lag`, or 0 with leapfrog [s]
@@ -73,8 +74,9 @@ struct StepFindings {
     Index crossings = 0;  // number of crossings found in this attempt; if nonzero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
-    // Impulse and work of attachments that hold nodes along single directions: by hold_axes (before contacts are
-    // solved), by rows of the contact problem, and by hold_axes_again (after contacts are solved).
+    // Impulse and work of attachments that hold nodes along single directions. `held`: by hold_axes, before contacts
+    // are solved. `held_rows`: by rows of the contact problem. `held_again`: by hold_axes_again, after contacts are
+    // solved.
     ExternalWork held, held_rows, held_again;
     SleepLosses rest;
     JointMeasures joints;
@@ -89,8 +91,8 @@ struct StepFindings {
     Real relaxed = 0;  // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;  // energy dissipated by the viscosity of implicit elements in this step [J]
     Real damped = 0;   // energy dissipated by damping in this step [J]
-    // Kinetic energy that clusters gained at the start of this attempt, because stiffened elements increased the
-    // inertia in their matrices [J].
+    // Kinetic energy that clusters (groups of nodes that implicit elements couple) gained at the start of this attempt,
+    // because elements stiffened and so increased the inertia in the cluster matrices [J].
     Real stiffened = 0;
     StrainFindings strained;  // impulse, losses and Newton iterations of the deformation of implicit bodies
 };
@@ -117,8 +119,8 @@ struct KeptVelocities {
     // step if an implicit body has a large strain.
     Column<Mat3> rotation, axes;
     Column<Vec3> angular_momentum;  // angular momentum of rigid and implicit bodies at the start of the step [kg m^2/s]
-    // Deformation velocities of implicit bodies [m/s]. `deforming`: after all forces but contacts have acted.
-    // `deforming_before`: at the start of the step.
+    // Deformation velocities of implicit bodies (ImplicitNodeTable::velocity) [m/s]. `deforming`: after all forces but
+    // contacts have acted. `deforming_before`: at the start of the step.
     Column<Vec3> deforming, deforming_before;
 };
 

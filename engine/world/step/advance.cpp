@@ -17,9 +17,10 @@ namespace skerry {
 
 namespace {
 
-/// Number of steps in a round. In each round the stable step of every body is evaluated once, because it changes when
-/// the body deforms. The stable step in use is never older than two rounds. With clusters, steps are several times
-/// longer, and elements deform more in each step. The rounds then have fewer steps.
+/// Number of steps in a round. In each round the stable step of every body is evaluated once, because deformation of
+/// the body changes it. The stable step in use is never older than two rounds. With clusters (groups of nodes that
+/// implicit elements couple), steps are several times longer, and elements deform more in each step. The rounds then
+/// have fewer steps.
 std::uint64_t steps_per_round(const WorldState& world) {
     return world.model.clusters.empty() && !world.model.of_ranks.has_clusters ? 128u : 64u;
 }
@@ -197,10 +198,11 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
 }
 
 /// Fetches copies of bodies (ghosts) from other ranks, if this is necessary after the last attempt: a rank lacked
-/// bodies, or bodies may have moved to where other ranks need them. Otherwise does nothing and returns false. The next
-/// attempt computes all forces anew, because new ghosts have none; h = 0 marks the forces as unknown. The assumed
-/// stiffness of clusters is therefore restored too: the next attempt stiffens the same clusters again, which adds
-/// impulses to the forces.
+/// bodies, or bodies may have moved to where other ranks need them. Otherwise does nothing and returns false.
+///
+/// The next attempt must compute all forces anew, because new ghosts have none; h = 0 marks the forces as unknown.
+/// Stiffening of clusters (implicitly integrated groups of nodes) has added impulses to the discarded forces. Therefore
+/// the assumed stiffness is restored too: the next attempt stiffens the same clusters and adds these impulses again.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all_findings.bodies_missing && !world.ranks.all_findings.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
@@ -227,8 +229,8 @@ void require_countable(const WorldState& world, Real dt) {
            of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size");
 }
 
-/// Calls functions of the user, and stores an exception that one of them throws until the end of advance(). The world
-/// is then in a valid state.
+/// Calls functions of the user. If one of them throws, stores the exception until the end of advance(), when the world
+/// is in a valid state.
 class Callbacks {
 public:
     /// Returns the result of call(); false if it throws.
@@ -286,9 +288,9 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     // Nodes that are only drawn (those of round bodies) can be updated late, unless there are force elements: these
     // read all nodes in every step.
     world.scratch.parameters.draws_late = !model.forced;
-    // `stiffened`: energy that clusters have gained by stiffening since the last committed step [J].
-    // `stiffened_before`: its value before the attempt that computed the present forces. If these forces are discarded,
-    // `stiffened` returns to this value.
+    // `stiffened`: energy that clusters (groups of nodes that implicit elements couple) have gained since the last
+    // committed step, because their elements have stiffened [J]. `stiffened_before`: its value before the attempt that
+    // computed the present forces. If these forces are discarded, `stiffened` returns to this value.
     Real stiffened = 0, stiffened_before = 0;
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
@@ -333,7 +335,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, attempt);
         if (!world.scratch.parameters.forces_known) stiffened_before = stiffened;
-        // added even if the attempt is not committed, because cluster matrices keep their update
+        // This energy counts even if the attempt is not committed, because cluster matrices keep the update that has
+        // caused it.
         stiffened += world.scratch.findings.stiffened;
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::again_over_ranks && fetch_ghosts(world)) stiffened = stiffened_before;

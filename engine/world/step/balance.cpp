@@ -20,7 +20,8 @@ namespace {
 struct BodySums {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    // sum of the magnitudes of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
+    // Sum of the magnitudes of the momenta of all nodes and bodies, and of the impulses of applied forces in a step.
+    // Momentum errors are compared with it.
     Real momentum_size = 0;  // [kg m/s]
     bool damps_held_body = false, holds_implicit_element = false;
 
@@ -64,8 +65,8 @@ BodySums measure(const Model& model, Real time, Real lag) {
         total.momentum += momentum;
     }
     Real implicit = 0;  // [J]
-    // Momentum of all nodes and bodies whose velocities symplectic Euler changes [kg m/s]. Held implicit bodies are not
-    // included, because the theta method integrates their motion.
+    // Momentum of all nodes and bodies whose velocities symplectic Euler changes; the power of gravity is computed from
+    // it [kg m/s]. Held implicit bodies are not included, because the theta method integrates their motion.
     Vec3 kicked = total.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
@@ -80,19 +81,21 @@ BodySums measure(const Model& model, Real time, Real lag) {
     total.kinetic += added_energy(model);
     // The velocities are `lag` (half a step) older than the positions. The kinetic energy is therefore increased by
     // `lag` times the power of all forces but contacts. To first order the result is m v.v' / 2, with the mass m and
-    // the velocities v and v' of two successive steps. For linear elastic bodies, symplectic Euler conserves the sum of
-    // this value and the elastic energy.
+    // the velocities v and v' of two successive steps. The reason for this choice: for linear elastic bodies,
+    // symplectic Euler conserves the sum of this value and the elastic energy.
     if (lag != 0) {
         total.kinetic -=
             lag * sum_of_own_blocks(model, [&](const Range& blocks) {
                 return kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
             });
         Real power = kicked.dot(model.settings.gravity);
-        if (model.forced)  // uses the forces of the last step, as balance.work does
+        // Uses the applied forces of the last step (applied_before), because Balance::work contains the work of these
+        // forces.
+        if (model.forced)
             for (std::size_t n = 0; n < nodes.position.size(); ++n) {
                 if (of_ghost(model, n)) continue;
-                // Applied forces, for example of springs, exchange momentum even while all nodes are at rest. They act
-                // for the time of one step, twice the lag.
+                // Applied forces, for example of springs, exchange momentum even while all nodes are at rest. So
+                // `momentum_size` includes their impulses. They act for the time of one step, twice the lag.
                 total.momentum_size += 2 * std::abs(lag) * nodes.applied_before[n].norm();
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);
@@ -115,8 +118,8 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
-/// True if a node of an implicit element is held. The additional inertia of the element then lets moving nodes exert
-/// forces on the held node, which are not measured.
+/// True if a node of an implicit element is held. Implicit integration gives the element an additional inertia, which
+/// couples its nodes. Moving nodes then exert forces on the held node, which are not measured.
 bool holds_implicit_element(const Model& model) {
     if (model.clusters.empty()) return false;
     const ElementInputs elements = model.all_elements();
@@ -148,8 +151,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
     Real work = push_work;
-    // Each cause counts with its magnitude. Impulses that cancel each other are exchanged momentum too, for example
-    // those of weight and support, or those of two attachments that squeeze a body.
+    // Balance::momentum_flow counts each cause with its magnitude. Impulses that cancel each other are exchanged
+    // momentum too, for example those of weight and support, or those of two attachments that squeeze a body.
     Vec3 impulse = Vec3::Zero();
     for (const ExternalWork* part : external) {
         impulse += part->impulse;

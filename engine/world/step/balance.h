@@ -12,8 +12,9 @@ struct Model;
 struct StepScratch;
 struct WorldState;
 
-/// Sums since the balance was opened, and the largest errors of the whole run. A change from outside, such as an added
-/// body or set velocities, closes the balance. The next check opens it again with the present energy and momentum.
+/// Balance of energy and momentum: sums since the balance was opened, and the largest errors of the whole run. A change
+/// from outside, such as an added body or set velocities, closes the balance, because no measured cause explains it.
+/// The next check opens the balance again with the present energy and momentum.
 struct Balance {
     bool open = false;
     // True if all momentum that bodies exchange with their surroundings is measured. False if a damped body was held
@@ -33,7 +34,7 @@ struct Balance {
     // The largest values in the run. An error is the difference between the change of energy or momentum and the sum of
     // its measured causes.
     Real energy_error = 0, energy_scale = 0;      // energy_scale: energy present plus energy exchanged [J]
-    Real momentum_error = 0, momentum_scale = 0;  // momentum_scale: magnitudes present plus exchanged [kg m/s]
+    Real momentum_error = 0, momentum_scale = 0;  // momentum_scale: |momentum| present plus exchanged [kg m/s]
 
     void close() { open = false; }
 };
@@ -42,10 +43,11 @@ struct Balance {
 /// surroundings minus the energy that the step dissipated.
 void add_step(const StepScratch& step, Balance& balance);
 
-/// Compares the present energy and momentum with their values at the opening plus the work and impulse since then.
-/// Records an error that is the largest so far. Opens the balance if it is closed. Reads all tables. `time`: present
-/// time [s]. `lag`: time by which velocities are older than positions [s]; the kinetic energy is corrected for it with
-/// the present forces. With ranks the function is collective, and sums energy and momentum over all ranks.
+/// Compares the present energy and momentum with their expected values: the values when the balance was opened, plus
+/// the work and impulse since then. Records the difference if it is the largest so far. Opens the balance if it is
+/// closed. Reads all tables. `time`: present time [s]. `lag`: time by which velocities are older than positions [s];
+/// the kinetic energy is corrected for it with the present forces. With ranks the function is collective, and sums
+/// energy and momentum over all ranks.
 void check_balance(const WorldState& world, Real time, Real lag, Balance& balance);
 
 /// Checks a copy of the balance (check_balance) and returns it, for a report. A closed balance is returned unchecked.

@@ -28,9 +28,9 @@ constexpr Real entry_cost = 0.7;
 /// Clusters must reduce the computing time of a simulated second at least by this factor. A smaller gain does not
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
-/// Upper bound of the moment of inertia that clusters may add to a body with the smallest principal moment I. The bound
-/// is the larger of two values: most_moment * I, and of_lumping times the amount by which lumping of the masses
-/// increases I. In typical meshes the bound is 3 to 20 % of I.
+/// Upper bound of the moment of inertia that clusters may add to a body. The bound is the larger of two values:
+/// most_moment times the smallest principal moment I of the body, and of_lumping times the amount by which lumping of
+/// the masses increases I. In typical meshes the bound is 3 to 20 % of I.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
@@ -197,7 +197,8 @@ private:
         const auto found = std::ranges::find(twins.results, step, &Result::step);
         return found == twins.results.end() ? nullptr : &*found;
     }
-    /// Creates the search of a group of equal bodies, from body b, unless the group already has one.
+    /// Creates the search for implicit elements that a group of equal bodies shares, from the data of body `b`, unless
+    /// the group already has one.
     void start(std::size_t b, TwinGroup& twins) {
         if (twins.search) return;
         const Range blocks = model_.bodies.blocks[b];
@@ -278,7 +279,7 @@ Real make_planned_implicit(Model& model, const PlannedBody& planned, std::span<R
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 
-/// Sets the step length for which the clusters of a body are made to `step` [s]. `stable`: stable step of the explicit
+/// Stores that the clusters of a body are made for the step length `step` [s]. `stable`: stable step of the explicit
 /// elements of the body [s].
 void set_cluster_step(Model& model, std::size_t b, Real step, Real stable) {
     model.bodies.cluster_step[b] = step;
@@ -336,9 +337,9 @@ Real shortest_step(const Model& model) {
 }
 
 /// Returns the plan with the least computing time among the plans for several step lengths. If no plan reduces the
-/// computing time by the factor least_gain, returns a plan with step 0. The first step lengths are 2, 4, 8 ... times
-/// the shortest stable step. If none of them gains enough, least_lengthening times this step follows. The last ones lie
-/// between the best step length so far and twice this length.
+/// computing time by the factor least_gain, returns a plan with step 0. Let s be the shortest stable step. The step
+/// lengths 2 s, 4 s, 8 s ... are tried first. If none of them gains enough, least_lengthening * s is tried. Last come
+/// lengths between the best one so far and twice the best one.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};

@@ -1,7 +1,8 @@
 // The drifts of leapfrog. A drift changes positions, but not velocities. At both ends of a call of advance(), positions
-// and velocities belong to the same time. The first drift of a call moves positions ahead by half of the first step.
-// Each step then changes velocities in its middle, and is symmetric in time. If the step length changes, a drift before
-// the step changes this lead to half of the new step. The last drift takes it back.
+// and velocities belong to the same time. Between them, positions lead by half a step, so that each step changes
+// velocities in its middle and is symmetric in time. The first drift of a call produces this lead. If the step length
+// changes, a drift before the step changes the lead to half of the new step. The last drift of a call takes the lead
+// back.
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -70,7 +71,7 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
             n.position.span().subspan(first, count), n.displacement_origin.span().subspan(first, count),
             model.bodies.frame[static_cast<std::size_t>(k.body[b])].offset);
     }
-    measure_displacement_of(executor, model, 0, search);  // 0 s: the moving frames of bodies stay in place
+    measure_displacement_of(executor, model, 0, search);  // 0 s: MovingFrame::offset of the bodies stays unchanged
 }
 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {

@@ -45,9 +45,10 @@ bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& p
     return over_face && (at(b) - at(a)).cross(at(c) - at(a)).dot(point - at(a)) > 0;
 }
 
-/// Updates `deepest` with held nodes of `body` inside `other`. Only nodes whose nearest triangle has three held nodes
-/// count, because contacts can resolve all other overlaps. A node in front of its nearest triangle is outside. Only for
-/// other nodes the winding number is computed (is_outside), which is slow. `pair`: ContactKey::pair of the two objects.
+/// Updates `deepest` with held nodes of `body` inside `other`. A node counts only if its nearest triangle has three
+/// held nodes. Otherwise contacts can move the triangle and so resolve the overlap. A node in front of its nearest
+/// triangle (is_in_front) is outside. For the remaining nodes, is_outside computes the winding number, which is slow.
+/// `pair`: ContactKey::pair of the two objects.
 void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
     const Model& model = world.model;
     const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));

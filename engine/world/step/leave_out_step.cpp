@@ -21,8 +21,8 @@ bool all_bodies_rest(const BodyTable& bodies) {
     return true;
 }
 
-/// Computes the motion in this step of all colliders or all attachments, the rows of `table`. Returns true if none of
-/// them moves.
+/// Computes the motion of all rows of `table` in this step. The table contains colliders or attachments. Returns true
+/// if none of them moves.
 bool all_stand_still(auto& table, Real time, Real h) {
     move_colliders(ColliderMotionInputs::bind({}, table), time, h, table.motion);
     return std::ranges::all_of(table.motion, [](const RigidMotion& motion) { return motion.stands_still(); });
@@ -41,8 +41,9 @@ bool a_force_changes(const Model& model, Real time, Real h) {
     });
 }
 
-/// True if the stable step of a stored shape is still to be evaluated. A stage evaluates it, so the step must not be
-/// skipped. This can happen although all bodies sleep: a body may have fallen asleep after its shape was stored.
+/// True if the stable step of a shape that store_shapes has copied is still to be evaluated. A stage does this, so the
+/// step that is about to begin must not be skipped. This can happen although all bodies sleep: a body may have fallen
+/// asleep after its shape was copied.
 bool checks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;

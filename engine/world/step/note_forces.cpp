@@ -49,8 +49,8 @@ void note_forces(Model& model) {
         if (element->derive) element->derive(model);
     }
     note_force_rates(model);
-    // If the last force element was removed, `forced` stays true for one more step. Velocities are older than
-    // positions, so the energy balance of this step uses the forces of the step before.
+    // If the last force element was removed, `forced` stays true for one more step. The reason is the energy balance of
+    // this step: velocities are older than positions, so the balance uses the forces of the step before.
     if (was_forced && !model.forced)
         model.forced =
             std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });

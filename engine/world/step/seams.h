@@ -29,9 +29,9 @@ struct ForceElement {
     // positions.
     void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
-    // For each body, finds an upper bound of the rate at which the dampers of this force element slow its nodes [1/s].
-    // In a step of length h they reduce no velocity below exp(-rate h) times its value. An entry of `of_body` that is
-    // below this rate is raised to it. The rate limits the stable step.
+    // For each body, finds a rate: in a step of length h, the dampers of this force element reduce no node velocity of
+    // the body below exp(-rate h) times its value [1/s]. An entry of `of_body` that is below this rate is raised to it.
+    // The rate limits the stable step.
     void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
     // For each body, adds the rate c of drag forces -c m v on its nodes with the mass m and the velocity v [1/s]. These
     // forces limit the stable step too, because they are computed with the velocities at the start of the step.
@@ -41,7 +41,7 @@ struct ForceElement {
     // Returns true if the forces change with time in the step of length `h` [s] that starts at time `t` [s], even if no
     // body moves.
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
-    // measures work and losses, so that the balance does not count them as external work
+    // measures the work and the losses of these forces, which the balance subtracts from the external work
     ListStages measure = nullptr;
     ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
     // Stored energy at the time `t` [s], with a correction if velocities are `lag` seconds older than positions [J].

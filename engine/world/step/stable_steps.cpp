@@ -41,14 +41,14 @@ Real step_of_body(const Model& model, std::size_t body) {
     damping += bound_of(model.force_damping, body);
     // In each step of length h, damping multiplies velocities by the factor k = exp(-damping h). A mode of the circular
     // frequency omega is then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `half` is 1 + k for
-    // h = `step`; without damping it is 2.
+    // h = `step`; without damping it is 2. The resulting step is at most this h, so its k is at least as large.
     const Real half = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
     step *= std::sqrt(half / 2);
     const Real drag = bound_of(model.force_drag, body);
     if (!(drag > 0)) return step;
-    // Drag forces -c m v with the rate c reduce the factor k by c h. The condition is then (omega h)^2 < 2 (1 + k - c
-    // h). The result is the h for which both sides are equal. The bound 1/c keeps drag from reversing velocities; for
-    // bodies without elements it is the only limit.
+    // Drag forces -c m v with the rate c reduce k by c h, so the condition becomes (omega h)^2 < 2 (1 + k - c h). The
+    // longest stable step is the h for which both sides are equal. A second bound, 1/c, ensures that drag does not
+    // reverse velocities; for bodies without elements it is the only limit.
     const Real share = std::isfinite(step) ? drag * step / (2 * half) : 0;
     return std::min(std::isfinite(step) ? step * (std::sqrt(1 + share * share) - share) : step, 1 / drag);
 }
@@ -96,10 +96,10 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Returns a step length that is stable for the explicit elements of a body [s]. It may be longer than `stable`, a
-/// length that is known to be stable, if a body with clusters is strained in a few places only. `longest`: length above
-/// which a longer result is of no use [s]. Returns `stable` if `stable` is at least `longest`, if the body has no
-/// clusters, or if no longer step is found.
+/// Returns a step length that is stable for the explicit elements of a body [s]. It is `stable`, a length that is known
+/// to be stable, or a longer one. A longer one may exist if a body with clusters is strained in a few places only. It
+/// is searched only if the body has clusters and `stable` is below `longest`, the length above which a longer result is
+/// of no use [s].
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real longest, Real stable,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -154,10 +154,11 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // Elements of a body become implicit when its stable step is shorter than goal_ / worth_clusters: those
-        // elements that are unstable at the step length reserve * goal_. In a body without clusters, reserve > 1 lets
-        // the body stay stable until the next evaluation. In a body with clusters, both numbers make fewer elements
-        // implicit, and later. Elements stay implicit when their strain decreases, even if they need it no longer.
+        // If the stable step of a body is shorter than goal_ / worth_clusters, those of its elements become implicit
+        // that are unstable at the step length reserve * goal_. In a body without clusters, reserve > 1 lets the body
+        // stay stable until the next evaluation. In a body with clusters, the larger worth_clusters makes elements
+        // implicit later, and reserve < 1 makes fewer elements implicit. Elements stay implicit when their strain
+        // decreases, even if they need it no longer.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -269,7 +270,8 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round) {
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target =
         static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(watch.first_piece[bodies.slot.size()])));
-    // new rows are set to 0, because saved worlds contain rows that are not used yet
+    // New entries are set to 0, so that the bytes of a saved world do not depend on chance: entries that are not used
+    // yet are saved too.
     watch.position.resize(model.nodes.position.size(), Vec3::Zero());
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());

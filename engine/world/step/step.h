@@ -106,8 +106,8 @@ void list_rows_taken_back(WorldState& world, TaskGraph& graph);
 /// moves, because their depth has not changed.
 HeldDepth held_in_shapes(const WorldState& world, bool all);
 /// Largest depth of a held node of one body or mesh collider inside another one at the present time. Counts only nodes
-/// whose nearest triangle has three held nodes too. Refits the bounding volume hierarchies of the objects that it
-/// compares.
+/// whose nearest triangle has three held nodes, because contacts can move all other triangles. Refits the bounding
+/// volume hierarchies of the objects that it compares.
 HeldDepth held_in_surfaces(WorldState& world);
 
 // note_forces.cpp
@@ -118,8 +118,8 @@ void note_forces(Model& model);
 /// Computes Model::force_rate, force_damping and force_drag for the present positions.
 void note_force_rates(Model& model);
 /// Must be called before steps. Updates results that may be out of date: Model::forced if the last force element was
-/// removed, Model::force_rate if it depends on positions, and Model::links and set_of_feature if rows that join bodies
-/// or surface sets have changed.
+/// removed, Model::force_rate if it depends on positions, and both Model::links and set_of_feature if rows that join
+/// bodies, or surface sets, have changed.
 void note_changed_seams(Model& model);
 
 // stable_steps.cpp
@@ -149,9 +149,9 @@ Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const 
 /// step much shorter than the shortest stable step at rest of all bodies, and if this reduces the computing time.
 /// Returns the energy that the inertia of new clusters adds to the balance [J].
 Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum);
-/// Ends a round, which is a fixed number of steps. In parallel with these, the stable steps of all bodies were
-/// evaluated. The new stable steps are used from now on. Elements become implicit as in evaluate_stable_steps. Returns
-/// the energy that the inertia of new clusters adds to the balance [J].
+/// Must be called at the end of a round, a fixed number of steps. During these steps, the stable steps of all bodies
+/// were evaluated. Puts the evaluated stable steps into use, and makes elements implicit like evaluate_stable_steps.
+/// Returns the energy that the inertia of new clusters adds to the balance [J].
 Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum);
 /// Must be called before each step. Copies the shapes of the bodies whose stable steps are evaluated next, in parallel
 /// with this step and perhaps later ones. Each body gets its turn once in a round of `round` steps.
@@ -161,9 +161,9 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round);
 /// of some rank became implicit.
 void count_pieces(WorldState& world);
 
-/// Updates the matrices of clusters whose elements have stiffened. The test is that of the stage stiffen_clusters in
-/// the next step. Velocities do not change, so the larger inertia adds kinetic energy. Returns this energy, which the
-/// balance must count as work [J].
+/// Updates the matrices of clusters whose elements have stiffened. Otherwise the stage stiffen_clusters would do this
+/// in the next step. Velocities do not change, so the larger inertia adds kinetic energy. Returns this energy, which
+/// the balance must count as work [J].
 Real follow_stiffening(Model& model);
 
 // yield_blocks.cpp
@@ -188,8 +188,8 @@ bool clusters_allowed(const Settings& settings);
 /// estimated computing time of a simulated second is smallest.
 void settle_clusters(Model& model, Column<Real>& stiffness_sum);
 /// Makes those elements of a body implicit that are unstable at the step length `step` [s]. Returns false, and changes
-/// nothing, in three cases: the body must not have clusters; the clusters would be too large or too heavy; or a
-/// simulated second costs less computing time with steps of the present length `present_step` [s].
+/// nothing, in three cases: the body must not have clusters; the clusters would have too many nodes or add too much
+/// inertia; or a simulated second costs less computing time with steps of the present length `present_step` [s].
 bool make_implicit(Model& model, std::size_t body, Real step, Real present_step, std::span<Real> stiffness_sum);
 /// Kinetic energy of the additional inertia that implicit elements give their nodes [J].
 Real added_energy(const Model& model);
@@ -205,8 +205,9 @@ struct StepPlan {
     Real h = 0;       // s
     Real steps = 1;   // number of steps of length `h` in the planned interval, this step included
     Real stable = 0;  // longest step that stability and the settings allow (trusted_step) [s]
-    // Length `stable`, or less if a body with a joint or tie would rotate too far in such a step (step_of_turns) [s]. A
-    // certain fraction of this length is the lower limit of attempts that are shortened.
+    // Length `stable`, or less if a body with a joint or tie would rotate too far in such a step (step_of_turns) [s].
+    // An attempt is not repeated with a shorter step if its step is shorter than a certain fraction of this length
+    // (most_shortening in transaction.cpp).
     Real regular = 0;
     // row in BodyTable of the body with the shortest stable step; no_index if this step comes from Model::of_ranks
     Index stiffest = no_index;
@@ -257,12 +258,13 @@ void find_self_crossings(Executor& executor, Model& model, Real time, Column<Ind
 /// Makes a drift of leapfrog, forwards or backwards in time: moves bodies with their present velocities, and colliders
 /// and attachments along their scripts. Afterwards the positions are `offset` seconds ahead of the velocities.
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
-/// Must be called after positions were restored. Computes BodyTable::displacement again, the largest distance of a node
-/// from its position NodeTable::displacement_origin, at which BodyTable::displacement was last zero.
+/// Must be called after positions were restored. Computes BodyTable::displacement again from the restored positions. It
+/// is the largest displacement of a node, relative to the moving frame of the body, since this column was last zero.
+/// NodeTable::displacement_origin contains the positions at that time.
 void measure_displacement_again(Executor& executor, Model& model, SearchMemory& search);
-/// Adds to ColliderTable::travel an upper bound of the distance that any point of a collider near a body moves in the
-/// time `seconds` [s] at its present velocity. `extent`: for each collider, the largest distance of such points from
-/// its origin [m]. For bodies, measure_displacement does this.
+/// Adds to ColliderTable::travel an upper bound of the distance that points of a collider move in the time `seconds`
+/// [s] at its present velocity. Only points near a body count. `extent`: for each collider, the largest distance of
+/// these points from its origin [m]. measure_displacement measures the corresponding distances of bodies.
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
 
 // watch_problems.cpp

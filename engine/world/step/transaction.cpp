@@ -21,9 +21,9 @@ constexpr std::size_t inline_work = 1024;
 constexpr int tries_at_one_length = 4;
 
 /// A step in which surfaces cross is repeated with half its length, if it is longer than StepPlan::regular divided by
-/// this factor. In the next steps the length grows again. Lengths that are predicted from the speed of deformation have
-/// the same lower limit. The length is limited and not the number of halvings, because a few halvings in each of many
-/// steps would make steps shorter and shorter.
+/// this factor. In the next steps the length grows again (step_growth). Step lengths that are predicted from the speed
+/// of deformation have the same lower limit. A limit for the number of halvings in one step would not suffice: a few
+/// halvings in each of many steps would make the steps shorter and shorter.
 constexpr Real most_shortening = 128;
 
 /// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length, if
@@ -32,9 +32,10 @@ constexpr Real most_shortening = 128;
 constexpr Real most_shortening_against_speed = 1024;
 
 /// A step that turns elements inside out is repeated with half its length, if it is longer than StepPlan::regular
-/// divided by this factor. Otherwise the inversion is accepted. Halving prevents a third of the inversions in thrown
-/// meshes. It does not prevent inversions in squeezed meshes, but reduces the energy that crushed bodies gain. With the
-/// factor 2 instead of 4, or with faster growth of the steps, a ball shot at a wall gains a third more energy.
+/// divided by this factor. Otherwise the inversion is accepted. In thrown meshes, halving prevents a third of the
+/// inversions. In squeezed meshes it prevents none, but crushed bodies gain less energy. With the factor 2 instead of
+/// 4, or with a step length that grows faster afterwards (step_growth), a ball shot at a wall gains a third more
+/// energy.
 constexpr Real most_shortening_against_inversion = 4;
 
 /// Factor by which AttemptLimits::longest grows in each committed step.
@@ -46,8 +47,9 @@ constexpr Real fast_growth = 1.5;
 /// Fraction of the largest allowed change of strain for which the next step is planned. It is below 1 because the next
 /// step may deform elements faster than the present one.
 constexpr Real strain_margin = 0.9;
-/// Upper and lower limit for the length of a repeated step, after an attempt that deformed an element too fast, as
-/// fractions of the length of this attempt.
+/// Limits for the length of a repeated step, after an attempt that deformed an element too fast, as fractions of the
+/// length of this attempt. least_at_once: upper limit, so each repetition shortens the step at least by a tenth.
+/// most_at_once: lower limit, so no repetition shortens the step to less than a quarter.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -65,7 +67,7 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
 }
 
 /// Returns the kick of a step: the time for which forces act on velocities [s]. With leapfrog it is the length of the
-/// step. Symplectic Euler is leapfrog with velocities half a step behind the positions; its kick lasts from the middle
+/// step. With symplectic Euler the velocities are half a step behind the positions, so the kick lasts from the middle
 /// of the last step to the middle of this step (docs/methods/time_stepping.md 1.5).
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
@@ -123,8 +125,9 @@ bool run_stages(WorldState& world) {
 }
 
 /// Makes the element rotations and spring strains that this step has computed the input of the next step. If no body
-/// sleeps, it swaps whole columns, which is faster. This also swaps rows that the step has not computed. They do no
-/// harm: for unstrained bodies both columns have equal values, and rows of led ghosts are never read.
+/// sleeps, whole columns are swapped, which is faster than copying rows. The swap also exchanges rows that the step has
+/// not computed. This does no harm: for unstrained bodies both columns have equal values, and rows of led ghosts
+/// (copies of bodies on which another rank computes the forces) are never read.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -133,7 +136,8 @@ void keep_frames(WorldState& world) {
         return;
     }
     // Copies only the rows that the stages of this step have computed. awake_elements() still returns these rows,
-    // although bodies may have fallen asleep or woken in this step: it changes only when the next step begins.
+    // although bodies may have fallen asleep or woken in this step: the result of this function changes only when the
+    // next step begins.
     keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 
@@ -144,9 +148,10 @@ void flow(WorldState& world) {
     world.scratch.findings.plastic = yield_blocks(world, world.model.awake_elements(), world.model.all_blocks());
 }
 
-/// Clears the mark `unstrained` of all bodies in contact. Must be called after a step in which contacts pushed bodies
-/// out of overlaps (RegionTable::pushed). A push-out changes positions but not velocities, so find_unstrained would not
-/// notice the strain.
+/// Clears the mark `unstrained` of all bodies in contact. A body with this mark counts as undeformed, and its elements
+/// are not computed. Must be called after a step in which contacts pushed bodies out of overlaps (RegionTable::pushed).
+/// Such a push changes positions but not velocities. In most steps find_unstrained compares only the velocities of a
+/// marked body, so it would not notice the strain.
 void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
     for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
         for (const Index body : *column)
@@ -266,7 +271,8 @@ AttemptLimits limits_of_next_attempt(const StepScratch& scratch, const StepPlan&
     return next;
 }
 
-/// Counts an attempt that is given up for a shorter one, under the cause for it.
+/// Adds an attempt that was given up for a shorter one to the counts of WorldReport. The attempt is counted under its
+/// cause (shortened_by) and the body that caused it.
 void note_try(WorldState& world) {
     const StepFindings& found = world.scratch.findings;
     const StepLimit limit = shortened_by(found);
@@ -352,8 +358,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // Crossings are cleared, because the shorter attempt has another motion and finds its crossings anew. If
-            // the reason is an inversion and not a crossing, the crossings of earlier attempts remain contacts.
+            // The shorter attempt has another motion and finds its crossings anew. The crossings of earlier attempts
+            // are therefore cleared. Exception: after an attempt that inverts elements, they remain contacts.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world);
             attempt = limits_of_shorter_attempt(world, plan, attempt);

@@ -18,7 +18,8 @@ struct StepPlan;
 struct WorldState;
 
 /// Outcome of one attempt at a step of length h. After every outcome but `committed`, the world is again in its state
-/// before the attempt. The regular step is StepPlan::regular. Region labels name a contact region in the same way on
+/// before the attempt. The regular step is StepPlan::regular. A body is too fast if an element of it deforms too much
+/// in the step, and unsolved if Newton's method fails for it. Region labels name a contact region in the same way on
 /// all ranks; ranks exchange them in rounds (RegionLabel).
 ///
 ///     attempt -- good ------------------------------------------------------------> committed
@@ -82,11 +83,12 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
 ///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they depend on the shapes at the start
-///                                                                      of the attempt, which do not change. Two
-///                                                                      exceptions: with leapfrog, which drifts first,
-///                                                                      a copy from the start of the call; before
-///                                                                      bodies move between ranks, a copy from the
-///                                                                      attempt that computed the forces
+///                                                                      of the attempt, which do not change. With
+///                                                                      leapfrog, drift_to changes the shapes, so a
+///                                                                      copy from the start of the call is restored.
+///                                                                      If bodies move between ranks, the next attempt
+///                                                                      computes the forces again, so a copy from
+///                                                                      before the first computation is restored
 ///     pairs, and candidates in them             find_candidates        nothing: results of a search for the positions
 ///                                                                      at the start of the step stay valid
 ///     search.memory.body_unmeasured             find_candidates        at the end of the call, bodies whose speeds no

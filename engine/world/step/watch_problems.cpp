@@ -1,4 +1,5 @@
-// Passes the contact problems of steps to a subscriber, mostly for comparison with other solvers.
+// Passes the contact problem of a step (the equations that the contact solver solves, and the impulses that it finds)
+// to a subscriber, mostly for comparison with other solvers.
 #include <algorithm>
 #include <functional>
 #include <set>

@@ -46,8 +46,9 @@ void weigh_springs(Model& model) {
 
 namespace {
 
-/// Upper bound over all directions of the inverse mass that an anchor gets from the rigid motion of its body [1/kg]. It
-/// is 0 for a body that is neither rigid nor implicit, and for a held one.
+/// Part of the inverse mass of an anchor (end of a spring) that comes from the rigid motion of its body: upper bound
+/// over all directions of the force [1/kg]. The result is 0 for a held body. It is also 0 for a body that is neither
+/// rigid nor implicit, because such a body has no separate rigid motion; all of its motion is that of its nodes.
 Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std::size_t s) {
     if (anchors.body[s] == no_index) return 0;
     const auto body = static_cast<std::size_t>(anchors.body[s]);
@@ -78,7 +79,8 @@ void add_spring_rates(Model& model, std::span<Real> of_body) {
 }
 
 // Raises the bound of each body to the largest rate of a single damper on it. The rates of several dampers on one mass
-// are not summed. Each rate is instead computed as if its damper had only an equal share of the mass.
+// are not summed. Each rate is instead computed as if its damper had only an equal share of the mass. This suffices:
+// with n dampers of the coefficients c_i on the mass m, the largest n c_i / m is at least the sum of all c_i / m.
 void bound_spring_damping(const Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     const auto divided = [&](const AnchorMass& mass, const AnchorInputs& anchors, std::size_t s) {

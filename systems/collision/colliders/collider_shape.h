@@ -29,11 +29,13 @@ ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Ve
 /// True if point k is the first point of a rim: its position depends on the normal of the face (collider_point).
 bool collider_point_follows(ColliderShape shape, Index k);
 
-/// Index of the flat region of a shape in which `point` can move furthest before it leaves the region (flat_reach), or
-/// no_index if the shape has no flat region. A flat region is a volume at a flat or hollow side of the shape, in which
-/// the signed distance is a linear or concave function. On a segment or triangle in this volume, the distance is
-/// therefore least at an end or corner, so only nodes can touch. A plane has one region, a box one at each of its six
-/// faces, a cylinder one at each end, and a bucket one inside and one below.
+/// A flat region of a shape is a volume at a flat or hollow side of the shape, in which the signed distance is a linear
+/// or concave function. On a segment or triangle in this volume, the distance is therefore least at an end or corner,
+/// so only nodes can touch. A plane has one region, a box one at each of its six faces, a cylinder one at each end, and
+/// a bucket one inside and one below.
+///
+/// Returns the index of the flat region in which `point` can move furthest before it leaves the region (flat_reach), or
+/// no_index if the shape has no flat region.
 Index flat_region(const ColliderGeometry& geometry, const Vec3& point);
 
 /// Distance that a point can move in the frame of the collider while it stays in the flat region `region` [m]. The
@@ -67,8 +69,9 @@ using LocalFace = std::array<Vec3, 3>;
 
 struct FaceContact {
     // Lower bound of the distance between the face and the ball of radius point.radius around the collider point [m].
-    // The first point of a rim moves along the rim if the face rotates. For this point, the bound therefore holds for
-    // the complete collider.
+    // Exception: the first point of a rim moves along the rim if the face rotates, so a bound for its present position
+    // would soon be wrong. For this point, `nearest` is a lower bound of the distance between the face and the complete
+    // collider.
     Real nearest;
     bool above;  // true: the projection of the collider point on the plane of the face is inside the face
     // Signed distance of the ball around the collider point from the plane of the face; negative behind the plane [m].

@@ -74,10 +74,10 @@ public:
     /// closed form. For a box, the formula is valid as long as the nearest corner, edge or side of the box is the same
     /// as at s = `near`. The result is NaN if there is no solution, or for other shapes than sphere and box.
     ///
-    /// Outside of the shape, the distance from the centre of the sphere or from the nearest feature of the box is f(s)
-    /// = sqrt(q^2 (s - s0)^2 + f0^2). Here q = |along|, and f0 is the least value of f, at the parameter s0. With r =
-    /// slope length, the equation q^2 (s - s0) / (length f) = slope has the solution s = s0 + r f0 / (q sqrt(q^2 -
-    /// r^2)).
+    /// Derivation: outside of the shape, the distance from the centre of the sphere, or from the nearest corner, edge
+    /// or side of the box, is f(s) = sqrt(q^2 (s - s0)^2 + f0^2). Here q = |along|, and f0 is the least value of f, at
+    /// the parameter s0. The derivative of f with respect to the arc length is q^2 (s - s0) / (length f). With r =
+    /// slope length, it equals `slope` at s = s0 + r f0 / (q sqrt(q^2 - r^2)).
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
@@ -160,8 +160,9 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the contact points in an interval in which the derivative of the distance increases. These are the minimum or
-/// both ends of a flat stretch, and the points beyond which the distance rises steeply (edge_contact.h).
+/// Finds the contact points in an interval in which the derivative of the distance increases (edge_contact.h). Contact
+/// points are the minimum, or both ends of a flat stretch, where the distance is nearly constant. The points beyond
+/// which the distance rises steeply are contact points, too.
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -190,12 +191,15 @@ public:
 private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
-    /// first_place: parameter from which on the derivative of the distance is at least -`slope`. last_place: parameter
-    /// up to which the derivative is at most `slope`. If the derivative jumps past the limit at a kink, the returned
-    /// parameter is on the side of the flat stretch, because the normal there is valid along the stretch.
+    /// Parameter from which on the derivative of the distance is at least -`slope`. If the derivative jumps past this
+    /// value at a kink, the parameter just behind the kink is returned, because the normal there is valid along the
+    /// flat stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
+    /// Parameter up to which the derivative of the distance is at most `slope`. If the derivative jumps past this value
+    /// at a kink, the parameter just before the kink is returned, because the normal there is valid along the flat
+    /// stretch.
     Real last_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, slope, true).find().low;
     }

@@ -33,9 +33,10 @@ struct EdgeContact {
 /// minimum. `a`, `b`: ends of the edge in the frame of the collider.
 ///
 /// If the distance is nearly constant on a stretch of the edge, for example along a side of a box, both ends of this
-/// stretch are found instead of the minimum. Also found are the points beyond which the distance rises steeply
-/// (steep_slope). Example: an edge extends beyond a side of a box. The contact at the border of the side then supports
-/// the edge before it rotates about the border.
+/// stretch are found instead of the minimum. The points beyond which the distance rises steeply (steep_slope) are
+/// found, too. Example: an edge lies on a side of a box and extends beyond the border of the side. If the edge is
+/// slightly tilted, the minimum is not at the border. A contact at the border supports the edge before it rotates about
+/// the border.
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
 }  // namespace skerry

@@ -24,8 +24,8 @@ Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3
 }
 
 /// Nearest points of an edge and a convex collider part. The distance along the edge is a convex function, so it is
-/// least where its derivative changes sign; bisection finds this point. If the point is outside of the part, its normal
-/// is accurate, because the gradient of the distance is continuous there.
+/// least where its derivative changes sign; bisection finds this point. The normal at the found point is accurate if
+/// the point is outside of the part, because the gradient of the distance is continuous there.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -63,8 +63,8 @@ public:
     }
 
     /// Lower bound of the distance between the wall and the stretch of the edge between the parameters `low` and `high`
-    /// [m]. It follows from two intervals: one contains the heights of all points of the stretch, the other contains
-    /// their distances from the axis.
+    /// [m]. It combines the gap in the radial direction with the gap in the axial direction. The first follows from the
+    /// least and greatest distance of the stretch from the axis, the second from its least and greatest height.
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_max = std::max(r_low, r_high),
                    r_min = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -83,10 +83,11 @@ private:
     Real nearest_to_axis_;
 };
 
-/// Nearest points of an edge and the wall of a bucket, found by branch and bound, because the distance may have several
-/// minima. The returned distance is a lower bound of the least distance, and at least half of the distance at the
-/// returned point. If the search reaches its limit of samples, it is at least a quarter of the distance at the returned
-/// point, but not always a lower bound. All distances are reduced by `threshold` [m].
+/// Nearest points of an edge and the wall of a bucket. The distance may have several minima along the edge, so they are
+/// found by branch and bound. All distances are reduced by `threshold` [m]. The returned distance is a lower bound of
+/// the least distance. It is at least half of the distance at the returned point. Exception: if the search reaches its
+/// limit of samples, the returned distance is at least a quarter of the distance at the returned point, but not always
+/// a lower bound.
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real threshold) {
     constexpr int max_samples = 1024;
     const Wall wall(geometry, end);
@@ -133,9 +134,9 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
 }
 
 /// Nearest points of a face and the disc inside a rim. The rim point that reaches furthest towards the face is the
-/// first to touch the interior of the face. Both sides of the face are tested, because the rim may be on either side.
-/// If the projection of the rim point lies beside the face, an edge of the face is nearest. The returned distance is
-/// then a lower bound, and `in_face` is false.
+/// first to touch the interior of the face. It is sought for both sides of the face, because the rim may be on either
+/// side. If it is in front of this side and its projection lies inside the face, it is the nearest point. Otherwise an
+/// edge of the face is nearest; then `in_face` is false and the returned distance is only a lower bound.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
@@ -184,10 +185,10 @@ public:
     }
 
     /// Upper bound of the speeds of all nodes of the feature relative to the collider during the whole step [m per
-    /// step]. A node has the velocity drift - turn x arm, with its displacement relative to the collider (drift), the
-    /// rotation vector of the collider (turn) and the vector from the collider's origin to the node (arm). In the code,
-    /// the first summand is the norm at the start. The second bounds its growth, because the arm changes by at most
-    /// drift during the step.
+    /// step]. A node has the velocity drift - turn x arm. drift: displacement of the node relative to the collider.
+    /// turn: rotation vector of the collider. arm: vector from the collider's origin to the node. The bound is the
+    /// speed at the start of the step plus |turn| |drift|. This product bounds the growth of the speed, because the arm
+    /// changes by at most |drift| during the step.
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)

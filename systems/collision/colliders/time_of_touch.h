@@ -28,8 +28,8 @@ struct TouchingFeature {
 
 /// Nearest points of a feature and a collider.
 struct Touch {
-    // Distance between the nearest points [m]. At the wall of a bucket, where several points may be nearest, it is only
-    // a lower bound, at least a quarter of the distance at `point`.
+    // Distance between the nearest points [m]. At the wall of a bucket it may be smaller, but is at least a quarter of
+    // the distance at `point`: several points may be nearest there, and the search stops early (nearest_on_wall).
     Real distance;
     std::array<Real, 3> weight;  // weight of each node in the nearest point of the feature; they add up to 1
     // Nearest point of the collider [m], and unit normal of the collider at this point. Vectors are in the frame of the
@@ -40,10 +40,11 @@ struct Touch {
     bool within = false;  // true: the collider touches the face from inside the body; set by first_touch only
 };
 
-/// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider.
-/// For a face and the first point of a rim (collider_point), all points of the rim are considered. If the rim has
-/// already passed through the face, the distance of the rim from the edges of the face is returned. Distances of nodes
-/// and edges are signed and reduced by `threshold.distance`. The distance from a face is positive on both of its sides.
+/// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider. If
+/// a face is tested against the first point of a rim (collider_point), all points of the rim are considered. If no
+/// point of the rim faces the interior of the face, for example because the rim has already passed through the face,
+/// the result is a lower bound of the distance of the rim from the edges of the face. Distances of nodes and edges are
+/// signed and reduced by `threshold.distance`. The distance from a face is positive on both of its sides.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
 /// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, and the feature

@@ -249,9 +249,9 @@ private:
             });
     }
 
-    /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. If this side is a
-    /// disc, also adds points of the cylinder rim next to the side: those at which this rim, projected along the
-    /// normal, crosses the outer border of the disc.
+    /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. A side that is a
+    /// disc may lie below only a part of the rim. So for a disc, those points of the nearer rim are added, too, at
+    /// which the projection of this rim on the plane of the side crosses the outer border of the disc.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = pose_.rotation * side.normal;
         const Vec3 at = from_other(side.at);

@@ -45,10 +45,10 @@ private:
 /// the side by at most 30 degrees, it also contains the points of each rim at 90, 180 and 270 degrees from the nearest
 /// one. If the tilt is at most 1e-4 rad, it contains eight points of each rim at fixed angles instead of these three.
 ///
-/// A contact assumes that its point moves on a straight path within a step. If a tilted cylinder rotates about its axis
-/// by less than a radian in the step, the straight paths of these four points come no nearer to the side than the
-/// nearest of the four points is at the start. Points at other angles could come nearer on such a path, and would cause
-/// false contacts.
+/// Reason for the right angles: a contact assumes that its point moves on a straight path within a step. Suppose that a
+/// tilted cylinder rotates about its axis by less than a radian. On the straight paths, none of the four points comes
+/// nearer to the side than the point nearest to the side was at the start. Points at other angles, for example 45
+/// degrees, could come nearer on such a path, and would cause false contacts.
 struct RimPoints {
     static constexpr Index max_per_rim = 9;
     struct Point {
@@ -86,11 +86,12 @@ void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other
 /// cylinder.
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
-/// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]. It is the
-/// greatest of several bounds: the distance of the other shape from the bounding sphere of the cylinder; for two
-/// cylinders, the distance between the capsules around them; the distances between parallel support planes of the two
-/// shapes, with the axes of both shapes and the normals of `touches` as normals. `pose`: pose of the other shape in the
-/// frame of the cylinder.
+/// Lower bound of the distance between the cylinder and a part of another shape [m]. `pose`: pose of the other shape in
+/// the frame of the cylinder. The greatest of these bounds is returned:
+/// - distance of the part from the bounding sphere of the cylinder;
+/// - distance between two parallel planes that touch the cylinder and the part and have one of these directions as
+///   normal: the axes of both shapes, the contact normals in `touches`;
+/// - for two cylinders, distance between the capsules that contain them.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                           const RigidMotion& pose, const CylinderTouches& touches);
 

@@ -7,9 +7,10 @@
 //             BodyTable) and of the path of one frame relative to the other. For a body and a collider it is the sum of
 //             the travel of the body, the path of the body's frame and the travel of the collider.
 //   d0        sum of BodyTable::displacement of both partners at time 0, when D(0) was measured; 0 for a collider
-//   T0        T0 = T(0) - 2 d0 (pair_travel_base), so T - T0 is the travel since time 0 plus 2 d0. The term 2 d0 is
-//             needed, because the travel of a body is the sum of the changes of its displacement d, the greatest
-//             distance of a node from its origin. A node can move by 2 d to the other side of its origin while d stays.
+//   T0        T0 = T(0) - 2 d0 (pair_travel_base), so T - T0 is the travel since time 0 plus 2 d0. Reason for 2 d0:
+//             the travel of a body sums the changes of its displacement d, the greatest distance of a node from its
+//             origin. A node can move by 2 d to the opposite side of its origin while d, and so the travel, does not
+//             change.
 //   F         front, F = T(t) plus an upper bound of the decrease of D in this step (PairTable::travel_bound)
 //   zone, m   zone: distance below which features are tested in each step (PairScale); m: margin of a list
 //
@@ -87,10 +88,11 @@ inline Real face_zone(const PairScale& scale) {
     return std::max(scale.contact_distance, scale.face_depth);
 }
 
-/// Distance that must remain between the cores (centres or axes) of round bodies during the motion of a step: the sum
-/// of their radii. The bodies count as in contact if the gap between their surfaces is below contact_slack times the
-/// shell distance. With zero shell distance, surfaces in contact may overlap by rounding errors. The required distance
-/// is then zero, so only crossings of the cores are found.
+/// Distances for the crossing test of round bodies, whose features are the cores (centres or axes). Throughout the
+/// step, the distance between the cores must remain above the sum of the radii. The bodies count as in contact if the
+/// gap between their surfaces is below contact_slack times the shell distance (PairScale::shell). With zero shell
+/// distance, surfaces in contact may overlap by rounding errors. The distance that must remain is then zero, so only
+/// crossings of the cores are found.
 inline ContactThreshold threshold_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? ContactThreshold{scale.radii, contact_slack * scale.shell}
                                               : ContactThreshold{};

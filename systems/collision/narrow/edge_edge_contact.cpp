@@ -19,11 +19,11 @@ constexpr Real min_bend = 0.01;
 // (docs/methods/collision.md 4.4). Wedge adds the tolerance `closing` for rotations within the step: if a contact stops
 // one end of an edge, the other end moves on, and the edge could cross another edge in the same step.
 //
-// border_angle is needed for an edge that rests on a face F of another body. It crosses two edges A and B of F, and
-// both contact normals are exactly that of F, which is the limit of the range. If the bend of A (the angle between the
-// normals of its faces) is smaller than that of B, the slack lets the resting edge sink further at A. The contact
-// normal at B is then outside of the range, by about 0.01 rad for edges of equal length. Without the tolerance the
-// contact at B would be lost: the resting edge would fall onto F, regain the contact and be pushed out, again and
+// border_angle is needed for an edge E that rests on a face F of another body. E crosses two edges A and B of F, and
+// both contact normals are equal to the normal of F, which is one limit of the range. Suppose that A is flatter than B
+// (smaller angle between the normals of its faces). The slack (Wedge::slack) then lets E sink further at A than at B. E
+// is thus tilted, and the contact normal at B leaves the range, by about 0.01 rad for edges of equal length. Without
+// the tolerance the contact at B would be lost: E would fall onto F, regain the contact and be pushed out, again and
 // again.
 constexpr Real border_angle = 3 * min_bend;
 
@@ -69,8 +69,8 @@ public:
         into_[1] = across(along, position[opposite(second, ends)] - origin);
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
-        // `fall`: height of the plane of the first face above that corner of the second face which is opposite to the
-        // edge [m]. It is positive at a convex edge.
+        // `fall`: depth of the second face below the plane of the first face [m]. It is measured at the corner of the
+        // second face that is not on the edge, and is positive at a convex edge.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
         if (against_axis) {  // the axis of a capsule may also rest on flat and slightly concave edges
             convex_ = fall > -min_bend * other_width - closing;
@@ -78,8 +78,8 @@ public:
         }
         convex_ = fall > min_bend * other_width - closing;
         // The slack is (2 min_bend - b) w1 w2 / (w1 + w2) / 2 with the angle b between the normals of the two faces and
-        // the widths w1, w2 of the faces (docs/methods/collision.md 4.5). Here b is replaced by its sine, fall /
-        // other_width, so the order of the faces hardly matters.
+        // the widths w1, w2 of the faces (docs/methods/collision.md 4.5). The small angle b is replaced by its sine,
+        // fall / other_width, which is equal for both orders of the faces up to rounding.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
@@ -118,7 +118,7 @@ private:
     }
 
     std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
-    // for each face: upper limit of the scalar product of `into_` and a direction for which faces() is true [m]
+    // for each face: greatest scalar product of `into_` and a direction at which faces() accepts the direction [m]
     std::array<Real, 2> border_;
     Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;

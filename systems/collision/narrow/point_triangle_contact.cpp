@@ -168,7 +168,8 @@ bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> posit
                        const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
     // If the axis tilts by the small angle t, the vector from the vertex to the nearest point p of the axis becomes
-    // offset + t * along. [low, high]: tilt angles t for which no face at the vertex is nearer to p than the vertex.
+    // offset + t * along. Each face at the vertex limits t to angles at which the vertex is nearer to p than the face.
+    // [low, high]: angles that all faces visited so far permit.
     const Vec3 along = q.distance * axis.normalized();
     Real low = -axis_tilt, high = axis_tilt;
     const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {

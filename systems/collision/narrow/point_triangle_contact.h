@@ -34,18 +34,19 @@ struct PointTriangleContact {
 /// Tests a point against the part of a triangle that is nearest to it: the face, an edge or a vertex. If the distance
 /// exceeds both `near` and scale.zone, only `closest` and `sleep` are computed.
 ///
-/// If an edge or vertex is nearest, only one triangle reports the contact: the triangle with the lowest row of all
-/// triangles at this edge or vertex, and only if none of them has a face nearer to the point. The normal is the normal
-/// of the face, or points from the edge or vertex to the point. If the point is too close to the edge or vertex for an
-/// accurate direction, the normal is the mean of the normals of the adjacent faces. The core of a round body can be
-/// touched from all sides.
+/// An edge or vertex belongs to several triangles, but if it is nearest, only one of them reports the contact: the one
+/// with the lowest row. None reports a contact if one of the faces at this edge or vertex is nearer to the point. The
+/// normal is the normal of the face, or points from the edge or vertex to the point. If the point is too close to the
+/// edge or vertex for an accurate direction, the normal is the mean of the normals of the adjacent faces. The core of a
+/// round body can be touched from all sides.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
                                             const Vec3& point, Index triangle, const PairScale& scale, Real near,
                                             Surfaces surfaces);
 
 /// True if a vertex of a surface can touch a capsule or the curved side of a cylinder. Let p be the point of the axis
-/// that is nearest to the vertex. The result is true if, after some tilt of the axis by at most axis_tilt, no face at
-/// the vertex is nearer to p than the vertex. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
+/// that is nearest to the vertex. The vertex can touch if no face at the vertex is nearer to p than the vertex is. As a
+/// tolerance, it suffices that this holds for at least one tilt of the axis by at most axis_tilt. `offset`: vector from
+/// the vertex to p [m]. `axis`: direction of the axis.
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale);
 

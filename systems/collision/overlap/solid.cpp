@@ -68,8 +68,8 @@ int passage(const Solid& solid, const std::array<Index, 4>& triangle, const Vec3
     int side = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t next = (k + 1) % 3;
-        // The lower node comes first, so that both triangles at an edge compute the same number, but with opposite
-        // signs.
+        // The node with the lower index comes first, so both triangles at an edge call side_of with the same arguments.
+        // Their results then always have opposite signs, even if rounding errors decide the side.
         const int own =
             triangle[k] < triangle[next] ? side_of(point, at(k), at(next)) : -side_of(point, at(next), at(k));
         if (side != 0 && own != side) return 0;

@@ -81,8 +81,9 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     for (std::size_t c = 0; c < collider.slot.size(); ++c) {
         const Index row = static_cast<Index>(c);
         memory.collider_extent[c] = collider_extent(inputs, row, memory.box.span().first(body_count));
-        // The motion of the collider in this step is computed again, although it is also part of travel_bound - travel.
-        // The travel of a rotating shape grows without limit, so this difference would have a large rounding error.
+        // The difference travel_bound - travel contains the motion of the collider in this step, but is not used here.
+        // It would have a large rounding error, because the travel of a rotating shape grows without limit. So the
+        // motion is computed again.
         memory.collider_margin[c] = collider_reach(inputs, row, memory.collider_extent[c], h) + common_travel;
         search.collider_valid_until[c] = collider.travel[c] + memory.collider_margin[c];
         memory.box[body_count + c] = collider_box(collider.geometry[c], collider.motion[c]);

@@ -133,10 +133,10 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        // The core of a sphere or cylinder is a point in this search. It is tested against the faces and axes of the
-        // other body, but nodes of the other body are not tested against it: the test of a face finds the case that a
-        // node of the face is nearest, and a node inside a flat surface does not obstruct the sphere. For two spheres,
-        // only the core of the first is tested against the second.
+        // The core of a sphere or cylinder is a point in this search. Only this point is compared with the faces and
+        // axes of the other body; nodes of the other body are not compared with it. No contact is lost: if a node is
+        // nearest to the core, the test of a face at the node finds it. A node inside a flat surface does not obstruct
+        // the sphere. For two spheres, only the core of the first is compared with the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, first_.edges), &other = features_of(b, second_.edges);

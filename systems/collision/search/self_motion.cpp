@@ -133,8 +133,9 @@ void find_leaves(const CollisionInputs& inputs, Index body, SelfSearch& self) {
     }
 }
 
-/// Finds pairs of leaves in a sorted list. Consecutive candidates have few different leaves. The class therefore
-/// stores, for recent first leaves, where in the list their pairs begin.
+/// Tests whether a sorted list contains a pair of leaves. The pairs are asked for in the order of the candidates, and
+/// many consecutive candidates have the same first leaf. So for first leaves that were asked for lately, the class
+/// stores where in the list their pairs begin.
 class SortedLeafPairs {
 public:
     explicit SortedLeafPairs(std::span<const LeafPair> pairs) : pairs_(pairs) {}

@@ -11,10 +11,11 @@
 //     D(t) >= D(s) - U(a, b).
 //
 // Reason: take the weights of the mesh nodes for the nearest points at time t. The points with these weights at time s
-// were at least D(s) apart, and the vector between them has changed by at most U(a, b), apart from the rotation. The
-// velocities give the bound R(a, b) >= reach (contact_reach.h) in the same way. Each pair of leaves has a spare
-// distance M(a, b): features of the pair that are not in the list satisfy D(s) >= zone + M(a, b). So they stay outside
-// of the zone until U(a, b) exceeds M(a, b).
+// were at least D(s) apart, and the vector between them has changed by at most U(a, b), apart from the rotation.
+// R(a, b) is an upper bound of the gap that can close in the coming step (reach in contact_reach.h). It is computed in
+// the same way, from velocities in place of displacements. Each pair of leaves has a spare distance M(a, b): features
+// of the pair that are not in the list satisfy D(s) >= zone + M(a, b). So they stay outside of the zone until U(a, b)
+// exceeds M(a, b).
 //
 // 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t. No update is needed while
 //    U(root, root) + R(root, root) is below the smallest M.
@@ -23,7 +24,7 @@
 //    SelfMotion::skin, S(a, b) bounds the relative motion in one step, and k is steps_ahead. The term k S gives fast
 //    pairs a larger M, so that they are not compared in every step.
 // 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself represents all other
-//    pairs. If it expires, the close pairs are listed again.
+//    pairs. If its M is not above its R, the close pairs are listed again.
 //
 // All bounds and D(s) are computed from boxes.
 #pragma once

@@ -7,11 +7,10 @@
 
 namespace skerry {
 
-/// Calls visit(c, d) for pairs of leaves, c below node a of one tree and d below node b of another tree, until a call
-/// returns true. Returns true if a call returned true. near(c, d): true if two tree nodes are close to each other. A
-/// pair of leaves is visited if near() is true for the two leaves and for all pairs of nodes that the descent from a
-/// and b to these leaves passes. `self`: a and b belong to the same tree, which is paired with itself; each node is
-/// then also paired with itself.
+/// Descends two trees from node a of one and node b of the other. Calls visit(c, d) for each pair of leaves that it
+/// reaches, until a call returns true. Returns true if a call returned true. near(c, d): true if two tree nodes are
+/// close to each other; the descent ends at pairs of nodes that are not. `self`: a and b belong to the same tree, which
+/// is paired with itself; each node is then also paired with itself.
 template <class Near, class Visit>
 bool any_leaf_pair(std::span<const BvhNode> node, Index a, Index b, bool self, const Near& near, const Visit& visit) {
     if (!near(a, b)) return false;

@@ -116,9 +116,9 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// For each tetrahedron of a block: |F'|^2 divided by the squared leeway [1/s^2]; 0 in an unused lane. The leeway is a
-/// factor on the allowed change of F. The rate of F is F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and
-/// rest positions X.
+/// For each tetrahedron of a block: |F'|^2 divided by the squared leeway [1/s^2]; 0 in an unused lane. F' = [v_k - v_0]
+/// [X_k - X_0]^-1 is the rate of the deformation gradient F, with the velocities v and rest positions X of the corners.
+/// The leeway is a factor on the allowed change of F.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& difference) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -133,10 +133,10 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
 }
 
 /// Squared deformation rates of the tetrahedra of a block, divided by the squared leeways (factors on the allowed
-/// change of F) [1/s^2]. The deformation rate is the smaller of two values: the norm |F'| of the rate of F, and the
-/// greatest speed of a corner relative to corner 0, divided by the smallest altitude.
+/// change of the deformation gradient F) [1/s^2]. The deformation rate is the smaller of two values: the norm |F'| of
+/// the rate of F, and the greatest speed of a corner relative to corner 0, divided by the smallest altitude.
 ///
-/// All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most blocks.
+/// The second value is cheap. If it shows that no tetrahedron exceeds `rate` [1/s], as in most blocks, all lanes are 0.
 /// `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
 Real8 squared_deformation_rate(const CheckInputs& state, std::size_t block, Real rate, Real max_relative_speed) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
@@ -187,8 +187,9 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
 }
 
 /// Greatest |F'|^2 of the elements of a block, divided by their squared leeways (factors on the allowed change of F)
-/// [1/s^2]. F' is the rate of the deformation gradient F. Returns 0 for inversion barriers, and if `beside_fast` marks
-/// no node of the block: then all its tetrahedra are slow.
+/// [1/s^2]. F' is the rate of the deformation gradient F. Returns 0 for inversion barriers, and for a block without a
+/// node marked in `beside_fast`. These marks are set at the corners of fast tetrahedra, so all tetrahedra of such a
+/// block are slow.
 Real check_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     // the limit applies to means of F over tetrahedra, but F of an inversion barrier is F of one tetrahedron
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;

@@ -16,10 +16,10 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
-/// Deformation rate of an element, divided by its leeway. The leeway is a factor on max_strain_step, the largest change
-/// of the deformation gradient F that a step may make. The deformation rate is the smaller of two values: the norm |F'|
-/// of the rate of F, and the greatest speed of a tetrahedron's corner relative to its corner 0, divided by its smallest
-/// altitude.
+/// Deformation rate of the fastest element, divided by the leeway of this element. The deformation rate is the smaller
+/// of two values: the norm |F'| of the rate of the deformation gradient F, and the greatest speed of a corner of a
+/// tetrahedron relative to its corner 0, divided by the smallest altitude of the tetrahedron. The leeway is a factor on
+/// max_strain_step, the largest change of F that a step may make.
 struct StrainRate {
     Real rate = 0;          // rate of the fastest element; 0 if no element exceeds the given rate [1/s]
     Index body = no_index;  // body of the fastest element: row of BodyTable
@@ -114,15 +114,16 @@ struct SpeedOutputs {
 /// elements have the leeway 1. Implicit elements may deform more in a step, because they make no step unstable.
 inline constexpr Real implicit_leeway = 5;
 
-/// Writes the greatest speeds, and returns the first fault in body order. A fault is a velocity that is not finite, or
-/// an element whose deformation gradient F would change too much in this step of length `h` [s]. Parallel over node
-/// blocks and bodies.
+/// Writes the greatest node speeds to `speed`, and returns the first fault in body order. A fault is a velocity that is
+/// not finite, or an element whose deformation gradient F would change too much in this step of length `h` [s].
+/// Parallel over node blocks and bodies.
 ///
 /// The change of F (Frobenius norm) must not exceed `max_strain_step` times the leeway of the element. F of an element
 /// is a mean of F over tetrahedra, so it can change too much only if F of a tetrahedron does. An element is therefore
 /// tested only if one of its tetrahedra changes too much. A tetrahedron is tested only if two of its corners move apart
 /// by more than the allowed change of F times its smallest altitude. The verdict names the tetrahedron that deforms
 /// fastest. Common motion of all nodes and slow rotation of a large body cause no fault.
+///
 /// Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the
 /// smallest altitude of the body. This test also rejects fast rotation of a large body.
 ///

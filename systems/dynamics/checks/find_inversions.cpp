@@ -64,8 +64,9 @@ struct Body {
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
     Real travel_bound;  // upper bound on the travel of the body at the end of this step [m]
-    // Until the travel of the body exceeds travel_base + d, no node moves in the frame of the body by more than d from
-    // its present position (measure_displacement.h) [m].
+    // While the travel of the body is at most travel_base + d, each node stays within the distance d of its present
+    // position in the frame of the body. The travel is the sum of the changes of BodyTable::displacement
+    // (measure_displacement.h) [m].
     Real travel_base;
 
     Body(const InversionInputs& all_inputs, Real step, Index body)

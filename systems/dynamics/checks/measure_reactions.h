@@ -52,8 +52,9 @@ struct ReactionInputs {
     std::span<const Index> first, count;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
-    // Columns of RigidBodyTable; for each body, its rows in RigidBodyTable and ImplicitNodeTable. For a rigid body that
-    // an attachment holds, `kick` and `moment_kick` are the changes of its momentum and angular momentum.
+    // `body_rigid`, `body_implicit`: rows of RigidBodyTable and of ImplicitNodeTable that belong to each body. The
+    // other spans are columns of RigidBodyTable. For a rigid body that an attachment holds, `kick` and `moment_kick`
+    // are the changes of its momentum and angular momentum.
     std::span<const Range> body_rigid, body_implicit;  // BodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, kick, moment_kick, hold_moment;

@@ -60,15 +60,16 @@ struct WorkInputs {
 /// unknown. Ghosts (copies of bodies of other ranks) do not count either, because their owners count them. Sums run
 /// over fixed groups of nodes, in a fixed order.
 ///
-/// Work and impulse of a force F on a node follow from three times: the step length `h`, the force interval `kick`, and
-/// `lag`, half of the previous step, which is 0 with leapfrog [s].
-/// - Impulse: kick F.
-/// - Constant load: the work is h F . velocity_next, because h velocity_next is the displacement in symplectic Euler.
-/// - Load on a free node that has changed by dF since the last step: the work is greater by lag dF . velocity, because
-/// each force acts over half of the previous step and half of this step.
-/// - Load on a free node with leapfrog: its displacement is h (velocity + velocity_next) / 2.
-/// - Holding force: the part that balances weight and loads does work over h, the part that balances element forces
-/// over `kick`. For an implicit body both parts act over `kick`, to which strain_implicit_bodies has scaled `force`.
+/// Three times occur [s]: the step length `h`, the force interval `kick` (time for which forces act), and `lag`, which
+/// is half of the length of the previous step, or 0 with leapfrog. For a force F on a node:
+/// - The impulse is kick F.
+/// - A load does the work F . (displacement in the step). The displacement is h velocity_next in symplectic Euler. With
+/// leapfrog the displacement of a free node is h (velocity + velocity_next) / 2.
+/// - If the load on a free node has changed by dF since the last step, its work is greater by lag dF . velocity. The
+/// reason: each load acts over half of the previous step and half of this step.
+/// - A holding force has two parts. The part that balances weight and loads does work over h, the part that balances
+/// element forces over `kick`. For an implicit body both parts do work over `kick`, because strain_implicit_bodies has
+/// scaled `force` to this time.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

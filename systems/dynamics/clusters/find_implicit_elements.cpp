@@ -249,9 +249,10 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
 }
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
-    // Every fourth round also makes elements implicit, so that the mass shares can adapt in between. Most rounds
-    // estimate the stable steps. The rigorous bound is computed in the first and in every 24th round after it, and to
-    // confirm an estimate by which all elements are stable.
+    // Every round changes the mass shares. Every fourth round also makes elements implicit; the other rounds let the
+    // mass shares adapt to this. Most rounds only estimate the stable steps. The rigorous bound is computed in the
+    // rounds 1, 25, 49 and so on. It is also computed in the round after an estimate by which all elements are stable,
+    // to confirm this estimate.
     constexpr int rounds_of_sharing = 4;
     constexpr int rounds_of_estimates = 24;
     // Largest factor by which a mass share may change in one round. Without this limit, an element that stays unstable

@@ -59,8 +59,9 @@ public:
     /// inertia or form too large a cluster. The outputs are then invalid.
     ImplicitShare find(const ImplicitGoal& goal);
 
-    /// Estimate of the fraction of the volume that must become implicit. The remaining elements are then stable at a
-    /// step of `stable` [s] with the masses of the nodes. The estimate takes much less time than find().
+    /// Estimate of the fraction of the volume that must become implicit so that the remaining elements can be stable at
+    /// a step of `stable` [s]. These elements then need no more mass in total than the nodes have. The estimate takes
+    /// much less time than find().
     Real estimate_volume(Real stable) const;
 
 private:
@@ -89,10 +90,10 @@ private:
     /// values (start_mass_shares()), because unit_ is divided by them and later shares may be 0.
     void prepare();
     void list_incidences();
-    /// measure() and estimate() compute the stable steps of all elements with their present mass shares. measure() uses
-    /// the rigorous bound. estimate() scales the last rigorous bound by the change of the trace since then
-    /// (find_trace()).
+    /// Computes the stable steps of all elements with their present mass shares by the rigorous bound.
     void measure();
+    /// Estimates these stable steps. A stable step is nearly proportional to 1/sqrt(trace) (find_trace()), so the
+    /// rigorous bound of the last measure() is scaled by sqrt(trace at that time / present trace).
     void estimate();
     /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends
     /// only on the shape. g_k is the shape gradient and m_k the element's part of the mass of node k. sum_ must contain
@@ -102,10 +103,10 @@ private:
     /// Marks of an element: near_unstable if any of its nodes has this mark, and near_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes some neighbours of unstable elements implicit. Neighbours share a node with an element that is unstable at
-    /// `step`, or are unstable themselves. Such an element becomes implicit if its needed_fraction() is at least
-    /// min_needed_fraction_, or if all its nodes belong to implicit elements, because then it enlarges no cluster. If
-    /// there is no such element, min_needed_fraction_ is lowered for the next call.
+    /// Makes some elements implicit that are unstable at `step` or share a node with an unstable element. An element of
+    /// this kind becomes implicit if its needed_fraction() is at least min_needed_fraction_. It also becomes implicit
+    /// if all its nodes belong to implicit elements, because then it enlarges no cluster. If no element meets one of
+    /// these conditions, min_needed_fraction_ is lowered for the next call.
     void make_unstable_implicit(Real step);
     /// Writes the assumed moduli of the implicit elements. Returns the moment of inertia that they add, and whether
     /// they have too much volume or form too large a cluster.

@@ -52,10 +52,10 @@ template <std::size_t Rows, class Visit>
 }
 
 /// Multiplies `Rows` rows of a symmetric matrix, from row `first_row` on, by the vectors `kick` (impulses on the
-/// nodes), and returns the sums of the rows. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each
-/// entry also stands for the transposed entry: its product with the vector `kick` of its row is added to `sum` at its
-/// column. Thus only one triangle of the matrix is read, which matters because large matrices do not fit into the
-/// caches.
+/// nodes), and returns the products. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each entry
+/// is used twice: entry (r, c) times the vector `kick` of column c belongs to the product of row r. As the transposed
+/// entry (c, r), it is also multiplied by the vector `kick` of row r and added to `sum` at c. Thus only one triangle of
+/// the matrix is read, which matters because large matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t first_row, std::size_t width,
@@ -110,7 +110,7 @@ template <std::size_t Rows>
 
 /// Multiplies `Rows` complete rows, from row `first_row` on, by the vectors `kick`, and stores the sums. The rows cross
 /// the diagonal in the complete tile that begins at row and column `first`. This tile contains both triangles, so its
-/// entries do not also stand for their transposed entries.
+/// entries are not used a second time as transposed entries.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                       const ByComponent& kick, const ByComponent& sum) {

@@ -307,8 +307,9 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    // load_position reads one number past the position. For the last node, the highest, this number may lie beyond the
-    // end of the array, so its position is copied number by number.
+    // load_position reads one number past the position. The last row of the list belongs to the node with the highest
+    // row of NodeTable. For this node the number may lie beyond the end of `position`, so its position is copied number
+    // by number.
     const std::size_t last = node.size() - 1;
     for (std::size_t s = 0; s < last; ++s) store_half(load_position(&at(s)), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};

@@ -31,8 +31,9 @@ struct ElementInputs {
     std::span<const ElementLane> own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const SpringStrain> spring_strain = {};
-    // Columns of BodyTable. Elements of idle bodies (asleep, or led by another rank) and of unstrained bodies (in
-    // translation without strain) are left out of a step. An empty span means that there are no such bodies.
+    // Columns of BodyTable. Elements of idle bodies (asleep, or ghosts whose forces only the owning rank computes) and
+    // of unstrained bodies (in translation without strain) are left out of a step. An empty span means that there are
+    // no such bodies.
     std::span<const std::uint8_t> body_idle = {};
     std::span<const std::uint16_t> body_unstrained = {};
     std::span<const ElementForm> mass_form = {};  // may be empty if all elements use mass_share [1/(kg m^2)]

@@ -59,10 +59,12 @@ struct UnstrainedOutputs {
 ///
 /// All nodes of an unstrained body have bitwise the same velocity, and none of its elements is strained or rotated or
 /// has a strained spring. An unstrained body remains so while its node velocities are equal. Its strains are checked
-/// again only every unstrained_steps steps. Steps do not write the rotations and spring strains of its elements, but
-/// they still swap the columns of present and next values. When a body becomes unstrained, this function therefore
-/// makes rotation_next and spring_strain_next equal to the present columns. Code that changes node positions except by
-/// a time step must set `unstrained` to 0.
+/// again only every unstrained_steps steps. Code that changes node positions except by a time step must set
+/// `unstrained` to 0.
+///
+/// Steps do not write the rotations and spring strains of the elements of an unstrained body, but they still swap the
+/// columns of present and next values. When a body becomes unstrained, this function therefore makes rotation_next and
+/// spring_strain_next equal to the present columns.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);
 
 }  // namespace skerry

@@ -1,5 +1,6 @@
-// Updates the memory of the elements (rotation, spring strains) after a committed step with sleeping bodies, whose
-// elements the step did not write. After other steps the columns of present and next values are swapped instead.
+// Updates the memory of the elements (rotation, spring strains) after a committed step with sleeping bodies. The step
+// did not write the elements of these bodies, so the columns of present and next values cannot be swapped, as they are
+// after other steps.
 #pragma once
 
 #include <span>

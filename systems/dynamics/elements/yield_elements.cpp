@@ -24,7 +24,8 @@ struct Flow {
 /// Radial return of the elements of a block with the elastic deformation gradient F.
 Flow flow_of(const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
              const Real8& plastic_strain) {
-    // Stresses that exceed the yield stress by less than this fraction are rounding errors of the last return.
+    // Stresses that exceed the yield stress by less than this fraction do so because of rounding errors of an earlier
+    // radial return.
     constexpr Real rounding = 1e-10;
     const Real mu = material.shear_modulus;
     const Real8 zero{}, one = zero + 1.0;
@@ -142,9 +143,10 @@ void forget_flow(const ElementInputs& elements, Range blocks, std::span<const Ve
     for (auto block = static_cast<std::size_t>(blocks.begin); block < static_cast<std::size_t>(blocks.end); ++block) {
         const Real8 strain = load(state.plastic_strain[block]), zero{}, one = zero + 1.0;
         if (all(strain <= 0.0)) continue;
-        // `rotation` is R. Plastic flow (plastic deformation Fp) has changed the rotated rest gradients R g_0 of the
-        // mesh to g = Fp^-T R g_0. Computed with g, the rest positions have the deformation gradient A = R^T Fp^-1. So
-        // Fp = A^-1 R^T, and M = Fp restores the gradients: M^T g = R g_0.
+        // Finds the matrix M that undoes the plastic deformation Fp. With R = `rotation`, plastic flow has changed the
+        // rotated rest gradients R g_0 of the mesh to g = Fp^-T R g_0. Computed with the gradients g, the rest
+        // positions have the deformation gradient A = R^T Fp^-1. So Fp = A^-1 R^T, and M = Fp restores the gradients:
+        // M^T g = R g_0.
         const LaneMat3<Real8> A = deformation_gradient(elements.nodes_of(block), rest_position), cof = cofactor(A);
         const Real8 over_det = 1.0 / (strain > 0.0 ? dot(A.c0, cof.c0) : one);
         LaneMat3<Real8> M;

@@ -43,8 +43,9 @@ public:
 private:
     template <class X>
     void solve_in_place(X* x) const;
-    /// Columns of the nonzero blocks in row `k` of L, left of the diagonal. Blocks of a row are computed in this order:
-    /// each comes after those blocks of the row on which its value depends. Sets mark_ of these columns and of k to k.
+    /// Columns of the nonzero blocks in row `k` of L, left of the diagonal, in the order in which these blocks are
+    /// computed. Each block comes after all blocks of the row from which its value is computed. Sets mark_ to k for
+    /// these columns and for column k.
     std::span<const Index> columns_of(const BlockRows& pattern, Index k);
 
     std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index for a root

@@ -40,10 +40,10 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 
 namespace {
 
-/// Removes rigid motion from the velocities and displacements at the end of the step, and writes the moments, axes and
-/// strain flag of the new shape. `energy`: kinetic energy of the deformation at the start of the step plus the work
-/// done on the body [J]. Returns the damped energy [J]: `energy` minus the kinetic energy of the deformation at the
-/// end, and minus the growth of the spin energy and of the elastic energy.
+/// Removes rigid motion from the velocities and displacements at the end of the step, and writes the principal moments
+/// and axes of inertia of the new shape, and whether its strain is large. `energy`: kinetic energy of the deformation
+/// at the start of the step plus the work done on the body [J]. Returns the damped energy [J]: `energy` minus the
+/// kinetic energy of the deformation at the end, and minus the growth of the spin energy and of the elastic energy.
 Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real energy,
                   StiffBody& stiff, const ImplicitStrains& out) {
     const BodyRows body(bodies, stiff, r);
@@ -72,9 +72,10 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
         stiff.remove_rigid_motion(next);
     }
     for (std::size_t n = 0; n < body.count; ++n) energy -= stiff.mass(body.order_index(n)) / 2 * next[n].squaredNorm();
-    // The spin energy is L.omega / 2, with the angular momentum L and the angular velocity omega. At the end of the
-    // step omega follows from the moments of inertia of the new shape and from the rotation that turn_of_step()
-    // computes. So the difference includes the energy error of this rotation (docs/methods/rigid_bodies.md 2).
+    // Subtracts the growth of the spin energy L.omega / 2, with the angular momentum L and the angular velocity omega.
+    // At the end of the step omega follows from the moments of inertia of the new shape and from the rotation that
+    // turn_of_step() computes. So the growth includes the energy error of this rotation (docs/methods/rigid_bodies.md
+    // 2).
     const Mat3 turned_for_step =
         turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
     const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),
@@ -98,8 +99,8 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         const std::size_t k = body.order_index(n);
         const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
         next[n] = before + (during - before) / theta;
-        // `energy`: work of contacts and loads as the engine reports it, plus the kinetic energy of the deformation at
-        // the start of the step [J].
+        // `energy`: work of contacts and loads, computed as in the energy balance that the engine reports, plus the
+        // kinetic energy of the deformation at the start of the step [J].
         energy += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
         if (!loads.load.empty()) {
             const Vec3 load = to_mesh * loads.load[body.first_node + n];
@@ -116,8 +117,9 @@ Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     Real kinetic = 0;
     for (std::size_t n = 0; n < body.count; ++n)
         kinetic += stiff.mass(body.order_index(n)) / 2 * body.rows(out.velocity_next)[n].squaredNorm();
-    // Growth of the elastic energy in the step by linear elasticity [J]. The damped energy of the step has been reduced
-    // by it. It is given back here, because end_in_shape() subtracts the growth by the material laws instead.
+    // Growth of the elastic energy in the step by linear elasticity [J]. This growth has been subtracted from the
+    // damped energy of the step. It is added again here, because end_in_shape() subtracts the growth by the material
+    // laws instead.
     const Real linear = stiff.elastic_energy(body.rows(out.displacement_next), false) -
                         stiff.elastic_energy(body.rows(bodies.displacement), false);
     return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);

@@ -147,9 +147,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 namespace {
 
 /// Computes the elastic forces on the nodes in a step of large strain, by index in the elimination order [N]. Forces on
-/// free nodes follow from the motion of these nodes, forces on held nodes from the material laws. So they do not add up
-/// to zero exactly: Newton's method leaves a residual, and the motion by contacts is computed with the tangent matrix
-/// instead of the laws. The missing force is divided equally among the held nodes.
+/// free nodes follow from the change of momentum of these nodes, forces on held nodes from the material laws. The sum
+/// of all forces should be zero, but is not exactly: Newton's method leaves a residual, and the motion by contacts is
+/// computed with the tangent matrix instead of the laws. The missing force is divided equally among the held nodes.
 void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
@@ -218,9 +218,10 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         const Vec3 &mesh_force = rate[k], world_force = frame.turn * mesh_force;
         const Vec3 arm = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * arm).cross(world_force);
-        // Subtracts the work of the attachment, which rotates the node positions against the elastic forces. The
-        // translation of the frame does no work, because the elastic forces add up to zero. At large strain the
-        // complete work of the elastic forces is added, and the growth of their energy is subtracted below.
+        // At small strain, subtracts the work of the attachment, which rotates the node positions against the elastic
+        // forces. The translation of the frame does no work, because the elastic forces add up to zero.
+        // At large strain, adds the complete work of the nodes against the elastic forces without this work of the
+        // attachment. The growth of the elastic energy is subtracted below.
         if (large)
             damped += h * next[n].dot(mesh_force);
         else if (!frame.is_still)

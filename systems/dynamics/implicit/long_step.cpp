@@ -156,10 +156,10 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.contact_velocity.swap(step.contact_velocity_next);
         step.contact_impulse.swap(step.contact_impulse_next);
         if (!times.ends) continue;
-        // `left`: velocity that the contacts would have caused in a complete long step, times the length of a long
-        // step. The next long step first assumes that contacts cause this velocity again. step.contact_velocity
-        // contains only the contacts in the time step.done; the factor times.length / step.done extends it to the
-        // complete step.
+        // Writes `left`: the velocity that the contacts would have caused in a complete long step, times the length of
+        // a long step [m]. The next long step first assumes that contacts cause this velocity again.
+        // step.contact_velocity contains only the contacts in the elapsed time step.done of the long step. The factor
+        // times.length / step.done extends it to the complete long step.
         for (std::size_t n = 0; n < body_velocity.size(); ++n)
             body_velocity[n] = times.length * (times.length / step.done) * step.contact_velocity[n];
     }

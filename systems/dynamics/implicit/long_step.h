@@ -18,8 +18,8 @@ bool takes_long_steps(const ImplicitBodies& bodies, const ImplicitTimes& times, 
 bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                        const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                        std::span<Vec3> out);
-/// Makes a sleeping body ready for a long step that starts with this short step. Contacts of this short step then use
-/// the matrix of the long step with LongStep::weight = 1.
+/// Prepares a sleeping body as if a long step started with this short step. The response of the body to contacts of
+/// this short step then uses the matrix of the long step and LongStep::weight = 1, the weight in the first short step.
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff);
 
 /// Computes displacements and velocities at the end of the short step. If the long step ends with this short step, the

@@ -152,11 +152,12 @@ struct ImplicitKicks {
 };
 
 /// Computes out.velocity_next, the velocities with which the node displacements change in the step, in the frame of the
-/// mesh. At small strain they are A^-1 P (M w + theta h (Q^T f - K u)): displacements u, velocities w before the step,
-/// loads f, masses M, stiffness K, rotation Q of the frame, matrix A of the step, and P, which removes rigid motion
-/// (docs/methods/implicit_bodies.md 2). At large strain they are the result of Newton's method. Adds these velocities
-/// to the node velocities that kick_rigid_bodies has computed from the motion of the frames. Computes missing matrix
-/// factors for the step length.
+/// mesh. At small strain they are
+///     A^-1 P (M w + theta h (Q^T f - K u))
+/// with the displacements u and velocities w before the step, the loads f, the masses M, the stiffness K, the rotation
+/// Q of the frame, and the matrix A of the step. P removes rigid motion (docs/methods/implicit_bodies.md 2). At large
+/// strain the velocities are the result of Newton's method. Adds them to the node velocities that kick_rigid_bodies has
+/// computed from the motion of the frames. Computes missing matrix factors for the step length.
 ///
 /// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step; the
 /// velocities of its held nodes are already set. Parallel over bodies. Returns false if there is no implicit body
@@ -211,7 +212,8 @@ struct ImplicitStrains {
 struct StrainPart {
     Real damped = 0;  // damped energy minus the work of the moment of the attachment [J]
     // Impulse of weight and loads over the complete step of length h, minus their impulse over the time loads.kick
-    // [N s]. The balance of momentum counts the impulse over loads.kick elsewhere.
+    // [N s]. Only this difference is returned, because the balance of momentum counts the impulse over loads.kick
+    // elsewhere.
     Vec3 impulse = Vec3::Zero();
 };
 
@@ -232,7 +234,8 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
 /// Advances the long step of every body by the short step that is being committed. When a long step ends, writes to
-/// ImplicitNodeTable::left how its contacts changed the displacements. Writes 0 for bodies that took an ordinary step.
+/// ImplicitNodeTable::left the displacements that its contacts cause in a complete long step: the next long step
+/// assumes that contacts have the same effect again. Writes 0 for bodies that took an ordinary step.
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 

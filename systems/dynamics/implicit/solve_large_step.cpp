@@ -34,8 +34,9 @@ public:
         return sum + stiff_.elements().energy(step_.within) + spin_energy();
     }
 
-    /// Computes the forces at the displacements step_.within, the gradient g of the function, and the next Newton
-    /// direction with the present factor of the matrix A. Returns the squared Newton decrement g.A^-1 g [J].
+    /// Computes the forces at the displacements step_.within, the gradient g of the function to be minimised, and the
+    /// next Newton direction with the present factor of the matrix A. Returns the squared Newton decrement g.A^-1 g
+    /// [J].
     Real evaluate() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {

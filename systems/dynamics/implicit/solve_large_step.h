@@ -10,10 +10,10 @@ namespace skerry {
 /// satisfies
 ///     inertia M v + within dU/du(carried + within v) = impulse
 /// with the node masses M and their coefficient `inertia`, the elastic energy U as a function of the displacements u,
-/// and the members `carried` and `impulse` of LargeStep. `within`: theta times the step length [s]. For a free body v
-/// has no momentum and no angular momentum in stiff.shape(), and U includes the energy of the spin, L.I^-1 L / 2, with
-/// the angular momentum L and the inertia I. stiff.respond() then uses the matrix of the last Newton iteration. Returns
-/// false if no velocity is found, or if a value is not finite.
+/// and the members `carried` and `impulse` of LargeStep. `within`: theta times the step length [s]. For a free body U
+/// also includes the energy of the spin, L.I^-1 L / 2, with the angular momentum L and the inertia I, and v has no
+/// momentum and no angular momentum in stiff.shape(). Afterwards stiff.respond() uses the matrix of the last Newton
+/// iteration. Returns false if no velocity is found, or if a value is not finite.
 bool solve_large_step(Real inertia, Real within, StiffBody& stiff);
 
 }  // namespace skerry

@@ -200,8 +200,9 @@ bool StiffBody::becomes_large_in_order(std::span<const Vec3> displacement, const
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
     // Fractions of the bounds of becomes_large() below which strain counts as small again. `accuracy_fraction`:
-    // fraction of the bounds on energies and spin. `strain_fraction`: fraction of small_strain. Below it strain is
-    // small without a test of the energies, because their difference is mostly a rounding error there.
+    // fraction of the bounds on energies and spin. `strain_fraction`: fraction of small_strain. If all strains are
+    // below that fraction, the energies are not tested, because at so small strains their difference is mostly a
+    // rounding error.
     constexpr Real accuracy_fraction = 0.25, strain_fraction = 0.1;
     if (energy_of_spin(angular_momentum) > accuracy_fraction * stretching_spin_) return false;
     const Displacements at(displacement, node_);

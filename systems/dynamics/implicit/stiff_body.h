@@ -118,14 +118,15 @@ public:
     /// True if linear elasticity or the moments of inertia at rest are too inaccurate in this state. `displacement`: by
     /// node of the body [m]. `angular_momentum`: in the frame of the mesh; zero for a held body [kg m^2/s].
     ///
-    /// One of two conditions suffices. First, the centrifugal forces of the spin would stretch a bar with the same spin
-    /// energy per volume by the strain small_strain. Second, |F - 1| exceeds small_strain in an element with the
-    /// deformation gradient F, and the energies or the spin are inaccurate.
+    /// The result is true in two cases. First, the centrifugal forces of the spin would stretch a bar with the same
+    /// spin energy per volume by the strain small_strain. Second, |F - 1| exceeds small_strain in an element with the
+    /// deformation gradient F, and in addition the energies or the spin are inaccurate.
     ///
-    /// The energies are inaccurate if the energies of elements by linear elasticity and by the material law differ too
-    /// much: the sum of the absolute differences exceeds energy_share of the linear energy. The spin is inaccurate if
-    /// its energy exceeds energy_share of the linear energy, and the inertia of the present shape gives another spin
-    /// than the inertia at rest, by more than the fraction small_strain.
+    /// The energies are inaccurate if linear elasticity and the material law give too different energies of elements:
+    /// the sum over the elements of the absolute differences exceeds energy_share of the linear energy. The spin is
+    /// inaccurate if two conditions hold: its energy exceeds energy_share of the linear energy, and the spin by the
+    /// inertia of the present shape differs from the spin by the inertia at rest by more than the fraction
+    /// small_strain.
     ///
     /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
@@ -232,8 +233,8 @@ private:
     Real stretching_spin_ = 0;                   // energy of the spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
     BodyShape shape_;  // set by set_shape()
-    // Inverse of the sum over the nodes of (|a|^2 1 - a a^T) / m, with the lever arm a and the mass m of the node
-    // [1/(kg m^2)].
+    // Inverse of the sum over the nodes of (|a|^2 I - a a^T) / m [1/(kg m^2)], with the unit matrix I and the mass m of
+    // the node. a is its mass-weighted lever arm shape_.arm [kg m].
     Mat3 inverse_arm_inertia_ = Mat3::Zero();
     BlockRows stiffness_, matrix_;
     // Coefficients of the masses and of the stiffness in the factored matrix. 0 if there is no factor, or if a tangent
@@ -242,10 +243,10 @@ private:
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
-    // Velocities that respond to the nodal momenta of unit translations (shifts_) and unit rotations (turns_), by index
-    // in the elimination order.
+    // Velocities A^-1 p by index in the elimination order, with the factored matrix A and the nodal momenta p of a
+    // rigid motion of the body. shifts_: unit translations along the three axes. turns_: unit rotations about them.
     std::vector<Mat3> shifts_, turns_;
-    // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
+    // Inverse of the 6x6 matrix whose columns are the total momentum and angular momentum of each shift and turn.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
     // Inputs and results of the last evaluation in becomes_large_in_order(). evaluated_at_ is empty before the first
     // evaluation, and after one with a strain that is not finite.

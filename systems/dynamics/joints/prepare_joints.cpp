@@ -47,11 +47,11 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
     return axis;
 }
 
-/// Vector from the point of joint `j` to the point at which its equations hold, along the axes of the second frame [m].
-/// Such a point may lie anywhere if the two bodies cannot rotate relative to each other, and anywhere on the axis of a
-/// hinge: their relative velocity is equal at all these points. The point nearest to the centre of mass is used,
-/// because velocity and spin are coupled least there. If both bodies move, the mean of their centres of mass is used,
-/// weighted by the sums of their inverse principal moments of inertia.
+/// Vector from the point of joint `j` to the point at which its equations are formed, along the axes of the second
+/// frame [m]. If the two bodies cannot rotate relative to each other, their relative velocity is equal at all points,
+/// so any point will do. For a hinge any point on its axis will do. The point nearest to the centre of mass is used,
+/// because velocity and spin are coupled least there. If both bodies move, their centres of mass are replaced by the
+/// mean of both, weighted by the sums of their inverse principal moments of inertia.
 Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first, const JointPlace& second) {
     if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
     Vec3 sum = Vec3::Zero();

@@ -51,9 +51,10 @@ struct Gradients {
         }
     }
 
-    /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding errors leave about
-    /// 1e-16 of a gradient g. This remainder causes no noticeable force. But the bound on the step contains g g^T /
-    /// |g|^2 (stiffness_share.cpp), in which a remainder counts as much as a full gradient.
+    /// Removes the nodes at which the gradients of the tetrahedra of the element add up to zero, such as an inner node
+    /// in its own element. Rounding errors leave about 1e-16 of a gradient g. This remainder causes no noticeable
+    /// force. But the bound on the step contains g g^T / |g|^2 (stiffness_share.cpp), in which a remainder counts as
+    /// much as a full gradient.
     void drop_zero_gradients() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;

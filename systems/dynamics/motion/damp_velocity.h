@@ -57,10 +57,10 @@ struct DampingInputs {
 ///
 /// Damps every body with damping > 0 that is not idle, not in unstrained flight (translation without strain) and not in
 /// RigidBodyTable. A body with pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid
-/// motion with the momentum and angular momentum of the body. It is taken at the earlier node positions, `lag` ago, to
-/// which the velocities belong. So a body that rotates with constant centrifugal stretch has no deformation velocity.
-/// The moment arms of the angular momentum are the present positions, so that damping leaves it unchanged at these
-/// positions.
+/// motion with the momentum and angular momentum of the body. It is taken at the node positions to which the velocities
+/// belong, which are earlier than the present positions by DampingInputs::lag. So a body that rotates with constant
+/// centrifugal stretch has no deformation velocity. The moment arms of the angular momentum are the present positions,
+/// so that damping leaves it unchanged at these positions.
 ///
 /// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,

@@ -64,8 +64,8 @@ bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts
     return left > least_share * all;
 }
 
-/// Key of the row for one held direction of an entry. ContactTable is in key order and these rows are its last, so the
-/// key is greater than all keys of contacts and ties.
+/// Key of the row that holds a node along one direction. These rows are the last rows of ContactTable, which is in key
+/// order. So their keys are greater than all keys of contacts and ties.
 ContactKey key_of(const HeldDirection& held) {
     return {~std::uint64_t{0}, 3 * static_cast<std::uint64_t>(held.entry) + static_cast<std::uint64_t>(held.column)};
 }
@@ -84,10 +84,11 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         held_impulse[held.entry] += impulse * held.direction;
         sum.impulse += impulse * held.direction;
         sum.flow += std::abs(impulse);
-        // The work of the holding force is the change of kinetic energy, mass * gained * (held.speed - gained / 2),
-        // minus the work of all other forces. Their impulse is mass * gained - impulse. Their work is counted at the
-        // end velocity, or with leapfrog (lag = 0) at the mean velocity. For gravity and loads it is counted over h
-        // instead of kick (measure_work).
+        // Work of the holding force: the change of kinetic energy, mass * gained * (held.speed - gained / 2), minus the
+        // work of all other forces on the node. The impulse of these other forces is mass * gained - impulse, and their
+        // work is this impulse times `during`: the end velocity, or with leapfrog (lag = 0) the mean velocity.
+        // measure_work counts the work of gravity and loads over h instead of kick, so their work in the time h - kick
+        // is subtracted, too.
         const Real during = lag == 0 ? held.speed - gained / 2 : held.speed;
         sum.work += impulse * during;
         if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;

@@ -13,12 +13,14 @@ namespace {
 // Number of bodies per job. A body whose displacement origins move takes a few microseconds.
 constexpr std::size_t displaced_bodies_per_job = 16;
 
-// Displacement at which the displacement origins move to the nodes, as a fraction of the mean edge.
+// Greatest allowed displacement (distance of a node from its displacement origin), as a fraction of the mean edge.
+// Beyond it, measure_displacement() moves the origins to the nodes, which resets the displacement to zero.
 //
-// A list of pairs with the margin `skin` is valid until the travels of its two bodies have grown by skin - 2 (a + b),
-// where a and b are the displacements of the bodies when the list was made (contact_reach.h). With this limit on a and
-// b, at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are lost. A greater limit makes lists expire
-// sooner. With a smaller limit more vibrating bodies exceed it; each reset then adds to their travel.
+// Displacements shorten the life of a list of pairs. A list with the margin `skin` is valid until the travels of its
+// two bodies have grown by skin - 2 (a + b), where a and b are the displacements of the bodies when the list was made
+// (contact_reach.h). With this limit on a and b, at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges
+// are lost. With a greater limit lists expire sooner. With a smaller limit more vibrating bodies exceed it, and each
+// reset leaves the displacement in their travel.
 constexpr Real longest_displacement = 0.01;
 
 void advance_frame(MovingFrame& frame, Real seconds) {

@@ -13,10 +13,10 @@ namespace {
 
 namespace limits = own_sleep_limits;
 
-/// Number of measurements of the drift (displacement of the nodes) that are due after `fraction` of one half of the
-/// sleep time. Measurement i is due at the fraction (i + frac(i golden)) / measurements, where frac is the fractional
-/// part. The intervals differ because, with equal intervals, an oscillation whose period is the interval would seem
-/// still.
+/// Number of measurements of the drift (displacement of the nodes) that are due before `fraction` of one half of the
+/// sleep time has elapsed. Measurement i is due at the fraction (i + frac(i golden)) / measurements, where frac is the
+/// fractional part. The intervals are unequal, because with equal intervals an oscillation whose period is the interval
+/// would seem still.
 int measurements_due(Real fraction) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(fraction * limits::measurements);
@@ -69,7 +69,7 @@ public:
             if (!first && furthest > limits::growth * least)
                 still = 0;
             else if (!first && (drift_grows || !is_balanced(half) || !keeps_shape(shape_grows)))
-                still = half;  // as if this half were the first, so that the next half is compared with it
+                still = half;  // this half now counts as the first, with which the next half is compared
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = shape_grows ? shape_drift : 0;
             begin_half();
@@ -77,11 +77,11 @@ public:
     }
 
 private:
-    /// True if the mean forces on the nodes without damping, over the last two halves of the sleep time, are in
-    /// balance. Damping must not be needed for the balance, because it does not act at rest. The force without damping
-    /// on a mass m is m (a + c v) with the acceleration a, the velocity v and the damping rate c. The mean of a, with
-    /// triangular weights over both halves, is the difference of the displacements in the two halves divided by the
-    /// squared length of a half. The sum of the drifts is an upper bound of this difference.
+    /// True if the mean forces on the nodes, over the last two halves of the sleep time, are in balance without the
+    /// damping forces. Damping must not be needed for the balance, because it does not act at rest. The force without
+    /// damping on a mass m is m (a + c v) with the acceleration a, the velocity v and the damping rate c. The mean of
+    /// a, with triangular weights over both halves, is (d2 - d1) / half^2, where d1 and d2 are the displacements of the
+    /// node in the two halves. |d2 - d1| is at most the sum of the drifts of both halves.
     bool is_balanced(Real half) const {
         // In a body with held nodes damping acts on the complete velocity, else only on the velocity relative to the
         // rigid motion.

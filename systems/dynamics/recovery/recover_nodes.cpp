@@ -84,10 +84,10 @@ private:
         return value;
     }
 
-    /// Arguments of the search for the deformation gradient at a surface node, whose stress balances the traction. The
-    /// traction is the external force on the elements around the node, divided by the surface area. The part of the
-    /// force that is due to weight and inertia is subtracted first. This part, divided by the volume of the node, is
-    /// taken to be the same as at the inner nodes nearby.
+    /// Arguments of the search for the deformation gradient at a surface node. The stress of this deformation gradient
+    /// must balance the traction: the external force on the elements around the node, divided by the surface area. The
+    /// part of the force that is due to weight and inertia is subtracted first. This part, divided by the volume of the
+    /// node, is taken to be the same as at the inner nodes nearby.
     SurfaceSearch search_at(std::size_t row) const {
         const auto f = static_cast<std::size_t>(plan_.smooth[row]);
         const RecoveryPlan::Face& face = plan_.faces[f];

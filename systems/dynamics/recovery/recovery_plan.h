@@ -39,8 +39,9 @@ struct RecoveryPlan {
         Real factor;
     };
     // One row for each needed node that is inside the body or on a smooth part of its surface: the row of the node in
-    // `faces`. It is no_index for inner nodes, and for nodes of materials that yield. The value at such a node is a
-    // weighted sum of values of the elements around it.
+    // `faces`, or no_index. It is no_index for inner nodes, and for nodes of materials that yield. The value at a node
+    // without a row of `faces` is a weighted sum of values of the elements around it. The value at any other node of
+    // this list is found by Newton's method.
     std::vector<Index> smooth;
     // For each row of `smooth`: factors of the elements around its node, by place, ascending. For a node without a row
     // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
@@ -51,9 +52,9 @@ struct RecoveryPlan {
     struct Face {
         SurfaceAround around;
         Index element;  // place of one element around the node; gives the material
-        // Factor on the sum of the forces at inner nodes, which estimates weight and inertia of the face's node: volume
-        // of the node (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes in the tetrahedra
-        // around it. 0 if there are no inner nodes.
+        // Weight and inertia of the face's node are estimated from the inner nodes in the tetrahedra around it: as the
+        // sum of the forces at these inner nodes times this factor. The factor is the volume of the face's node
+        // (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes; 0 if there are none.
         Real inner_share;
     };
     std::vector<Face> faces;
@@ -72,8 +73,9 @@ struct RecoveryPlan {
     // For each of `nodes`: its row of `smooth`, or no_index for a node at an edge, corner or interface of materials.
     // The value of such a node is extrapolated.
     std::vector<Index> smooth_of;
-    // Terms of the sums that give the extrapolated values. In `donors`, Term::from is a row of `smooth`. In the other
-    // two columns it is a place; they are used only for materials with too few donors for a fit.
+    // Terms of the sums that give the extrapolated values. `donors`: Term::from is a row of `smooth`.
+    // `strained_around`, `volumetric_around`: Term::from is a place; these terms are used only for materials with too
+    // few donors for a fit.
     Ragged<Term> donors, strained_around, volumetric_around;
 };
 

@@ -27,10 +27,11 @@ struct SurfaceAround {
     Vec3 area = Vec3::Zero();
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
-    // Terms of a least-squares fit for a smooth surface with the normal N: `inverse` and `across`. Many deformation
-    // gradients F have the same product b = F N. Among them F = stretch inverse + b across^T differs least from the
-    // deformation gradients within the triangles. `stretch` is the result of surface_stretch(). `inverse` is an inverse
-    // within the tangent plane: of the sum over the triangles of area times projector onto the triangle [1/m^2].
+    // Terms of a least-squares fit for a smooth surface with the normal N: `inverse` and `across`. The fit determines
+    // the deformation gradient F from b = F N. Many F have the same b; F = stretch inverse + b across^T is the one that
+    // differs least from the deformation gradients within the triangles. `stretch` is the result of surface_stretch().
+    // `inverse` is the inverse, within the tangent plane, of the sum over the triangles of area times projector onto
+    // the triangle [1/m^2].
     Mat3 inverse = Mat3::Zero();
     Vec3 across = Vec3::Zero();
 };

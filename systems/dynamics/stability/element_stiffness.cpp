@@ -1,9 +1,10 @@
 // Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K.
 //
-// The nonzero eigenvalues are those of V A, with the volume V and the 9x9 matrix A(Y) = H(Y L^T) L. Y is a 3x3 matrix,
-// H = dP/dF, and L L^T = Q is the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each
-// of them gives a closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows whether V
-// lambda_max(A) is below a limit c: then c I - V A is positive definite.
+// The nonzero eigenvalues are those of V A with the volume V. A is the 9x9 matrix that maps a 3x3 matrix Y to H(Y L^T)
+// L. H = dP/dF is the tangent of the material law, and L L^T = Q is the tensor of inverse masses. H, or an upper bound
+// on it, is a sum of a few terms, and each of them gives a closed-form term of A. The bound is
+// lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows whether V lambda_max(A) is below a limit c: then c I - V A is
+// positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -120,9 +121,10 @@ private:
     Matrix9<T>& A_;
 };
 
-/// Adds H = dP/dF of the viscous stress P = F S, with its second Piola-Kirchhoff stress S. This H maps X to F (2 mu
-/// sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and S are replaced by upper bounds on their eigenvalues. The
-/// bound for F F^T is the mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is the deviator of F^T F.
+/// Adds an upper bound on H = dP/dF of the viscous stress P = F S, with its second Piola-Kirchhoff stress S. This H
+/// maps X to F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. In the bound, F F^T and S are replaced by upper
+/// bounds on their eigenvalues. The bound for F F^T is the mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is
+/// the deviator of F^T F.
 template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
@@ -139,9 +141,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Takes account of the additional term b (R:X)^2 of the mass form of an element, where R is a rotation and X = Y L^T
-/// the displacement gradient. Without this term the mass form of Y is |Y|^2. With s = R L as a vector of nine entries,
-/// R:X = s.Y. So A becomes D A D, where
+/// Changes A to D A D, to take account of the additional term b (R:X)^2 of the mass form of an element. R is a rotation
+/// and X = Y L^T the displacement gradient. Without this term the mass form of Y is |Y|^2. With s = R L as a vector of
+/// nine entries, R:X = s.Y. So the complete mass form is Y.(1 + b s s^T) Y, and
 ///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
@@ -243,9 +245,9 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane, if the eigenvalue exceeds `threshold` in some
-/// lanes. It probably does so by little, so limits just above `threshold` are tried first. The greatest of the bounds
-/// is at most 0.3 % too large.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane of a block in which this eigenvalue exceeds
+/// `threshold` in some lanes. It probably does so by little, so limits just above `threshold` are tried first. The
+/// greatest of the bounds is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real threshold) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)

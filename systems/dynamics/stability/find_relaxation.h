@@ -20,12 +20,12 @@ struct RelaxationOutputs {
     std::span<Real> relaxing_share;
 };
 
-/// Finds the relaxation rates of the Maxwell elements that model the losses of a body. The rates divide a band of
-/// frequencies, from `highest` down to `lowest` / rates_below (relaxation.h). `highest` is the highest frequency of the
-/// body, `lowest` an estimate of its lowest frequency [1/s]. If the upper end of the band is less than 100 or more than
-/// 10,000 times its lower end, the lower end is changed. All elements get the same rates, so that losses depend neither
-/// on the position of an element nor on the number of elements. `stiffness_sum`: stiffness sum by node, as in
-/// stable_step(). Sequential.
+/// Finds the relaxation rates of the Maxwell elements that model the losses of a body. The rates are spread evenly, on
+/// a logarithmic scale, over a band of frequencies from `highest` down to `lowest` / rates_below (relaxation.h).
+/// `highest` is the highest frequency of the body, `lowest` an estimate of its lowest frequency [1/s]. If the upper end
+/// of the band is less than 100 or more than 10,000 times its lower end, the lower end is changed. All elements get the
+/// same rates, so that losses depend neither on the position of an element nor on the number of elements.
+/// `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
 void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
                      const RelaxationOutputs& out);

@@ -104,7 +104,7 @@ public:
     }
 
     /// Computes the entries q and b of all frame masses (frame_masses.h). `bound`: upper bound on the eigenvalues of
-    /// the matrix [1/s^2].
+    /// M^-1/2 K M^-1/2 [1/s^2].
     void share(Real bound, std::span<FrameMass> mass) const {
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;

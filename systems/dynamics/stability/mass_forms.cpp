@@ -3,12 +3,12 @@
 //
 // Let w be an upper bound on omega^2 of an element, with its highest circular frequency omega, and W = w Q^-1 / V. Then
 // the stiffness of the element is at most w G Q^-1 G^T = G V W G^T. This bound is the same for x, y and z, so the
-// matrix of all elements is a third as wide as the true stiffness matrix. Its eigenvalues are sharper bounds than those
-// of single elements.
+// matrix that adds it up over all elements is a third as wide as the true stiffness matrix. The eigenvalues of this
+// matrix are sharper bounds than those of single elements.
 //
-// For every positive definite Z, W = 2 mu I + lambda tr(Z) Z^-1 bounds H = dP/dF at rest: X:H X <= X:X W for every X,
-// with Lame's mu and lambda. A good Z is the square root of the mean of grad u grad u^T over the highest modes u.
-// Rounds of iteration find Z and these modes together.
+// W is computed from a positive definite matrix Z: W = 2 mu I + lambda tr(Z) Z^-1, with Lame's mu and lambda. With
+// every Z this W bounds H = dP/dF at rest: X:H X <= X:X W for every X. A good Z is the square root of the mean of
+// grad u grad u^T over the highest modes u. Rounds of iteration find Z and these modes together.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>

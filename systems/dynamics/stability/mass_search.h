@@ -25,8 +25,9 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Moduli of explicit elements at rest, with the springs of their Maxwell elements. In longer steps these springs relax
-/// more and count less. The assumed step is `longer` times the stable step that the bounds of single elements give.
+/// Moduli of explicit elements at rest, including the springs of their Maxwell elements. In a longer step these springs
+/// relax more, so they contribute less to the moduli. The step is therefore assumed: `longer` times the stable step
+/// that the bounds of single elements give.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
@@ -111,8 +112,8 @@ private:
     /// rows r and r + 1, but loads the pivot rows only once.
     void subtract_pivots(const Pivots& pivot, std::size_t r);
     void subtract_pivots_from_two(const Pivots& pivot, std::size_t r);
-    /// Pointer to the diagonal entry of row r. The entries of one column have the same lane of a register in all rows.
-    /// So rows can be subtracted register by register.
+    /// Pointer to the diagonal entry of row r. Rows begin at such addresses that the entries of one column are in the
+    /// same lane of a register in all rows. So rows can be subtracted register by register.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
     std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and number of entries per row

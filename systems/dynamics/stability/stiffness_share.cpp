@@ -54,7 +54,8 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
                LaneQuaternion<Real8>& q, Real threshold, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
-    // 0, or NaN if F is not finite. With it every bound becomes NaN then, even a bound that does not depend on F.
+    // 0, or NaN if F is not finite. It is added to each bound, so that even a bound that does not depend on F becomes
+    // NaN.
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.spring_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, threshold, sharpness, frame) + nothing;

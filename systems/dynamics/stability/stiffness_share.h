@@ -24,10 +24,12 @@ LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block,
 /// At node k the element counts with |g_k|^2 times the weight, where g_k is the gradient of the element at the node.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
-/// Sets the initial mass_share of each element. It is 1, except in these cases:
-/// - Bodies of several materials: the share of an element is the stiffness of its material, unless stiffness_weight()
-///   already contains a stiffness for this material. If it does so for any material of the body, shares of the others
-///   are in Pa. Otherwise they are divided by the greatest stiffness of the body.
+/// Sets the initial mass_share of each element, which is a factor of stiffness_weight(). It is 1, except in these
+/// cases:
+/// - Bodies of several materials: if stiffness_weight() does not itself contain the stiffness of the element's
+///   material, mass_share is this stiffness. If stiffness_weight() contains the stiffness of any other material of the
+///   body, mass_share must be in Pa, too. Otherwise only ratios matter, and it is divided by the greatest stiffness of
+///   the body.
 /// - Inversion barriers (guards): 0, because they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
@@ -74,8 +76,8 @@ Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block
 
 /// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the smallest
 /// of the numbers `threshold`, 1.1 `threshold`, 1.21 `threshold`... that exceeds omega^2. It is infinite if omega^2
-/// exceeds about ten times `threshold`. Springs of Maxwell elements relax as in steps of length `step` [s]; in longer
-/// steps they count less, so the bound is valid there, too.
+/// exceeds about ten times `threshold`. The springs of Maxwell elements relax, so they count less the longer the step
+/// is. They count as in a step of length `step` [s]; the bound is valid for this step and for longer ones.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                       LaneQuaternion<Real8>& q, Real threshold, Real step);
 

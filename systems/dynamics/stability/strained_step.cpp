@@ -24,11 +24,11 @@ constexpr Real base_factor = 1.1;
 // Number of rounds of the iteration for the node weights d. After many rounds the ratio of the row sum to the mass
 // times d would be equal at all nodes.
 constexpr int rounds = 4;
-// Number of factors of ten above the base within which the omega^2 of an element is searched. Beyond, it is infinite.
+// The omega^2 of an element is searched up to 10^ranges times the base. If it is greater, it counts as infinite.
 constexpr int ranges = 3;
 
-/// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight
-/// d of each node, and row sum of the excess matrix E for each node.
+/// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`: weight d_i of
+/// each node i. `row`: row sum of the excess matrix E for each node, sum_j |E_ij| d_j.
 struct Memory {
     std::span<Real> excess, weight, row;
 
@@ -109,7 +109,7 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     // Nodes without mass never move and get the weight 0.
     for (std::size_t n = 0; n < node_mass.size(); ++n) parts.weight[n] = node_mass[n] > 0 ? 1 : 0;
-    Real least = infinity;  // lowest upper bound found so far on the excess matrix E relative to the mass [1/s^2]
+    Real least = infinity;  // lowest number found so far for which E <= least M, as at the top of the file [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(parts.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {

@@ -25,7 +25,8 @@ struct WatchInputs {
     }
 };
 
-/// Stable-step check of one body that this time step continues: how many pieces are done then, and the result so far.
+/// Part of a stable-step check of one body that this time step does. A check is divided into pieces (stable_step.h),
+/// which are spread over several steps. `evaluation`: result of the pieces done so far.
 struct WatchPart {
     Index body = no_index;
     std::uint64_t until = 0;  // number of pieces done by the end of the step
@@ -33,9 +34,9 @@ struct WatchPart {
     StepEvaluation evaluation;
 };
 
-/// Computes those pieces of stable-step checks that must be done by the end of this step. A check of a body uses the
-/// shape of the body that `watch` stores. A second call for the same step does nothing. `parts` is work memory that is
-/// reused between steps.
+/// Does the part of the stable-step checks that is due in this step: the pieces (see WatchPart) that must be done by
+/// its end. A check of a body uses the shape of the body that `watch` stores. A second call for the same step does
+/// nothing. `parts` is work memory that is reused between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry

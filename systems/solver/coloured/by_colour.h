@@ -48,8 +48,8 @@ public:
         : order_(&order), team_(&team), partial_(partial) {}
 
     std::size_t number_of(std::size_t position) const { return static_cast<std::size_t>(order_->contact[position]); }
-    /// Visits the phases of the coloured order one after the other, as a sweep must, although contacts() allows any
-    /// order. Each worker then gets the same contacts as in a sweep and finds them in its cache.
+    /// A caller of contacts() accepts any order. This function visits the phases of the coloured order one after the
+    /// other, as a sweep must. Each worker then gets the same contacts as in a sweep and finds them in its cache.
     template <class Body>
     void contacts(std::size_t, Body&& body) const {
         for_blocks([&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });

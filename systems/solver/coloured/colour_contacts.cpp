@@ -221,9 +221,9 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Writes the coloured order. Contacts of one colour are sorted by node. A worker begins every phase with the same
-/// share of the blocks (Team). So it meets mostly the same nodes in all colours and finds them in its cache. Contacts
-/// of hubs and of the tail stay in ascending order.
+/// Writes the coloured order. Contacts of one colour are sorted by node. Team lets a worker begin every phase with the
+/// same share of the list of blocks, for example its second quarter. So the worker meets mostly the same nodes in all
+/// colours and finds them in its cache. Contacts of hubs and of the tail stay in ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

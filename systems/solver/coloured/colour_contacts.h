@@ -52,8 +52,8 @@ inline constexpr Index smallest_colour = 64;
 
 /// Colours the contacts greedily in ascending order, with at most 64 colours. Contacts without a free colour go to the
 /// tail. The result depends only on the arguments. Nodes are numbered 0 .. node_count - 1. Contacts of a colour are
-/// sorted by node. A worker begins every phase with the same share of the blocks (Team), so it meets mostly the same
-/// nodes in all colours and finds them in its cache.
+/// sorted by node. Team lets a worker begin every phase with the same share of the list of blocks, for example its
+/// second quarter. So the worker meets mostly the same nodes in all colours and finds them in its cache.
 void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory,
                      ColouredOrder& order);
 

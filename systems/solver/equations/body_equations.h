@@ -85,7 +85,7 @@ public:
     // that the impulses for `present` produce. change: produced - present. step: Newton step. before: `present` before
     // the step.
     Column<Real> present, produced, change, step, before;
-    Column<Mat3> derivative;  // by contact: derivative of the impulse that the last matrix contains
+    Column<Mat3> derivative;  // by contact: derivative of its impulse (LawImpulse) when the last matrix was built
     // Data by contact. sliding_direction: direction in which the contact slid when the last matrix was built; zero if
     // it did not slide. stops: 1 if the next step shall stop the contact.
     Column<Vec3> sliding_direction;

@@ -28,9 +28,9 @@ void subtract(Real value, Real* from) {
     *from -= value;
 }
 
-/// Operations that write one register of a product to a column of c. `subtract_from` subtracts the register.
-/// TakeOffLast subtracts only its last `count` rows, because the rows above are already done. `store` overwrites the
-/// column.
+/// Operations that write one register of a product to a column of c. `subtract_from` subtracts the register. `store`
+/// overwrites the column. TakeOffLast subtracts only the last `count` entries of the register. It serves the last rows
+/// of c if they do not fill a register: the register then begins with rows that are already done.
 constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
 struct TakeOffLast {
     Index count;
@@ -173,7 +173,7 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
 }
 
 /// Calls visit(begin, count) for the ranges of columns of b between gaps of at least eight consecutive zero columns.
-/// Zero columns come from nodes without a pressed contact, which do not couple to other bodies.
+/// Zero columns belong to nodes whose contacts are all open, since such nodes do not couple to other bodies.
 void for_each_run_of_columns(const DenseBlock& b, auto&& visit) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {

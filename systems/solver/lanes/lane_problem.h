@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// Possible sizes of a lane problem. Unused contacts are added to a region until it has one of these sizes.
+/// Possible numbers K of contacts of a LaneProblem. Unused contacts are added to a region until it has one of these
+/// numbers.
 inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
 inline constexpr int largest_lane_region = lane_sizes.back();
 

@@ -27,16 +27,17 @@ struct CableLaw {
     // For each segment s: sum of A_ij over i, j >= s [1/kg]. If the tension impulses of all segments from s to the end
     // grow by 1 N s, the rate of length of this part of the cable falls by this sum.
     std::span<Real> far_mobility;
-    // Columns by segment: present impulses [N s] and rates of length [m/s]. `before`, `previous` are scratch of
-    // BodyOperator::sweep_cables. They first hold the impulses before the cable is solved and those of the previous
-    // sweep, later the differences of `impulse` from these two.
+    // Columns by segment. `impulse`, `rate`: present impulses [N s] and rates of length [m/s]. `before`, `previous`:
+    // scratch of BodyOperator::sweep_cables. `before` first holds the impulses before the cable is solved, then their
+    // change by the solve. `previous` first holds the impulses of the previous sweep, then the change since that sweep.
     std::span<Real> impulse, rate, before, previous;
     static constexpr std::size_t numbers_by_segment = 5;  // number of the spans by segment, from far_mobility on
 
     std::size_t segments() const { return impulse.size(); }
-    /// Computes the impulses of the segments from the impulses of the points. `point` begins with the points of the
-    /// cable. Segment s pulls its first point by r_s and its last point by -r_s along `direction`. A segment without
-    /// length has the impulse of the segment before it, or of the first segment with a length.
+    /// Computes the impulse r_s of each segment s from the impulses on the points. `point`: impulses by point; the
+    /// first ones are those of the cable. Segment s acts on its first point with the impulse r_s `direction`, and on
+    /// its last point with the opposite impulse. A segment without length has the impulse of the segment before it, or
+    /// of the first segment with a length.
     void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
     /// Impulse at point `p` due to `impulses` of the segments or of the tie [N s].
     Vec3 at_point(std::span<const Real> impulses, std::size_t p) const;
@@ -55,8 +56,9 @@ private:
     Real entry(std::size_t row, std::size_t column) const { return mobility[row * segments() + column]; }
     /// Rate of length of the cable from segment `s` on [m/s].
     Real far_rate(std::size_t s) const;
-    /// Impulse with which segment `s` satisfies the law. `rate_mobility`: decrease of far_rate(s) per unit of this
-    /// impulse [1/kg].
+    /// New impulse of segment `s` by the law [N s]. For the first segment the law prescribes the tension or bounds the
+    /// length. For any other segment it demands far_rate(s) = 0 within the limits of friction. `rate_mobility`:
+    /// decrease of far_rate(s) per unit of this impulse [1/kg].
     Real next_impulse(std::size_t s, Real rate_mobility) const;
     Real step(std::size_t s) const;
     /// Change of the impulse of a tie that makes its rate zero [N s].

@@ -22,10 +22,10 @@ struct AxisBounds {
 /// Returns the impulse of motor and dry friction together, where u = w r + b is the axis velocity and w the mobility.
 /// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
-    // Motor and friction are two drives; the target velocity of friction is 0. `first`, `second`: greatest impulses of
-    // the drive with the lower and of the drive with the higher target. Below the lower target both drives push
-    // forwards with full strength. Between the targets the first drive brakes and the second still pushes, both with
-    // full strength. So at the lower target the sum of their impulses is in [second - first, second + first].
+    // Motor and friction are two drives. Each pushes towards its target velocity with at most its greatest impulse; the
+    // target of friction is 0. `first`, `second`: greatest impulses of the drives with the lower and with the higher
+    // target. The sum of both impulses is a falling staircase of u: first + second below the lower target, second -
+    // first between the targets, -first - second above the higher one. At a target it takes any value of the jump.
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
     const Real near_first = std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
@@ -58,8 +58,9 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     }
     if (!(axis.most > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
-    // `first`, `second`: as in drive_impulse. Up to the lower target the second drive has its full strength, and the
-    // first one gives the rest. Above that target the first drive brakes with full strength.
+    // `first`, `second`: as in drive_impulse. If the sum of both drives is at least second - first, the axis is not
+    // faster than the lower target: the second drive has its full strength, and the first one gives the rest. Otherwise
+    // the first drive brakes with full strength.
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
     const Real first_drive = drive >= second - first ? drive - second : -first;

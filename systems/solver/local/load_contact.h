@@ -16,10 +16,10 @@ namespace skerry {
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                   const SolverSettings& settings, Real h);
 
-/// Correction of the direction of friction [m/s]: half of the change of the sliding velocity by the forces of this
-/// step, perpendicular to the sliding direction. The friction law uses the velocity at the end of the step, whose
-/// direction has a first-order error. With the correction, friction acts along the sliding direction at the middle of
-/// the step. The correction is zero if there is no friction, no sliding or no change of direction. It is also zero for
+/// Correction of the direction of friction [m/s]. Friction should act along the sliding direction at the middle of the
+/// step. The friction law uses the velocity at the end of the step, whose direction differs by a term proportional to
+/// h. The correction is half of the change of the sliding velocity by the forces of this step, perpendicular to the
+/// sliding direction. It is zero if there is no friction, no sliding or no change of direction. It is also zero for
 /// friction that depends on the direction, because such friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 

@@ -31,16 +31,18 @@ inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth,
 
 /// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n, which moves positions only
 /// [m/s]. `normal_velocity`: u_n, the normal velocity after the velocity solve. A negative bias requests a push. A
-/// contact that does not penetrate requests none, even if the velocity solve left an error. So a region without
-/// penetration gets zero pseudo velocities, alone or within a larger region.
+/// contact that does not penetrate requests none, even if the velocity solve left an error. So a group of contacts
+/// without penetration gets zero pseudo velocities, no matter whether it is a region of its own or is solved together
+/// with other groups that it does not touch.
 inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSettings& settings, Real gravity, Real h) {
     if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Bias of a contact whose gap changes not only by its contact velocity, but also shrinks by a rotation of a body
-/// [m/s]. `loss` <= 0: rate of change of the gap by this rotation. If the gap is too small for the loss, the push
-/// compensates the rest of it.
+/// Bias of a contact whose gap shrinks because a rotation of a body moves the contact point on an arc [m/s]. `loss` <=
+/// 0: rate of change of the gap by the arc, which the contact velocity does not include. A penetrating contact is
+/// pushed against the whole loss. At any other contact, the push compensates only the part of the loss that would make
+/// the gap negative.
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;

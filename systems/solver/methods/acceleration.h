@@ -42,8 +42,8 @@ private:
     T momentum_ = T{} + 1, smallest_change_ = T{} + infinity;
 };
 
-/// The watchdog switches to plain (not accelerated) sweeps after this many sweeps without progress. If half of the
-/// sweeps since the start or the last switch is a larger number, that number applies.
+/// The watchdog switches to plain (not accelerated) sweeps after this many sweeps in a row without progress. In a long
+/// solve the limit grows: it is half of the number of sweeps since the start or the last switch, if this is more.
 inline constexpr Index watchdog_patience = 60;
 
 /// Decides whether sweeps are accelerated. The version for lanes never intervenes, because lanes do at most
@@ -72,8 +72,8 @@ public:
 private:
     // A squared impulse change below this fraction of `best_` counts as progress.
     static constexpr Real gain = 0.7;
-    // A phase is a sequence of plain sweeps. Phase k has 2^k times this number of sweeps, with k up to most_doublings,
-    // but at most most_plain sweeps.
+    // A phase is a sequence of plain sweeps. Phase k = 1, 2, ... has plain_sweeps times 2^k sweeps, or 2^most_doublings
+    // if k is greater, but never more than most_plain sweeps.
     static constexpr Index plain_sweeps = 200;
     static constexpr Index most_doublings = 7, most_plain = 20000;
     // Relaxation factor in every second phase, for problems on which undamped plain sweeps cycle.

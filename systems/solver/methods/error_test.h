@@ -62,8 +62,8 @@ public:
     }
 
     bool known() const { return known_; }
-    /// Variant of offer() that ignores an error that is not finite. It is for the last impulse of a method, which no
-    /// test has checked.
+    /// Variant of offer() that ignores an error that is not finite. It serves the last impulse of a method with a fixed
+    /// number of iterations: its error has not been tested before, and may be infinite or NaN.
     void offer_last(Real error) {
         if (std::isfinite(error)) offer(error);
     }

@@ -108,7 +108,7 @@ private:
 
     /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) of the natural map F, and the right-hand side -F. P' is
     /// the derivative of P, D the scalar mobilities, W the Delassus operator. The right-hand side includes the effect
-    /// of the opening contacts, whose impulse change is already known.
+    /// of the opening contacts: their impulse change is known, because their impulses become zero.
     void fill_equations() {
         // If there are more sticking contacts than the bodies have degrees of freedom, their impulses are not unique,
         // and the matrix is singular. A small multiple of the identity selects one solution. It changes the steps but

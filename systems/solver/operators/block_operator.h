@@ -51,8 +51,10 @@ struct BlockMemory {
     void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// Residual of the impulse with respect to its velocity u, for the cone of FCLIB or the pyramid of Lazarevych et al.
-/// (2010). It is the natural map F_i of a contact with the factor 1 instead of 1/D_i (docs/methods/errors.md 3).
+/// Residual of the friction law of a contact with the impulse r and the velocity u: r minus a projection onto the
+/// admissible impulses (for the cone: of r - u - mu |u_t| n). It is zero for a solution. It is the natural map F_i with
+/// the factor 1 instead of 1/D_i (docs/methods/errors.md 3). `friction`: cone of FCLIB, or pyramid of Lazarevych et al.
+/// (2010).
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// Operator of one region: the contacts [begin, end) of `memory`. No block of W may couple these contacts to contacts

@@ -246,8 +246,8 @@ void BodyOperator::gather(BodyEquations& equations, Column<Real>& velocity) cons
 
 namespace {
 
-/// Impulse P(z) of Coulomb's law for a contact that the impulse z would stop, the derivative of P with respect to z,
-/// and the state of the contact.
+/// Impulse P(z) of Coulomb's law for a trial impulse z, which would stop the contact: z if the contact sticks, z with
+/// its tangential part cut to the friction limit if it slides, 0 if it opens. `derivative`: derivative of P by z.
 struct LawImpulse {
     Vec3 impulse;
     Mat3 derivative;
@@ -268,7 +268,8 @@ LawImpulse coulomb_response(const Vec3& z, const Vec3& normal, FrictionLimits mu
     return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose(), false, h};
 }
 
-/// Columns of the contact frame, the last one times the friction ratio `across` (F S, docs/methods/friction.md 4.2).
+/// Columns of the contact frame: normal, first and second tangent. The second tangent is multiplied by the ratio
+/// `across` of the friction coefficients along both tangents (matrix F S, docs/methods/friction.md 4.2).
 Mat3 scaled_frame(const RigidPart& part) {
     Mat3 frame = matrix_of(part.frame);
     frame.col(2) *= part.across;
@@ -299,11 +300,10 @@ LawImpulse law_impulse(const RigidPart& part, const Vec3& start, const Vec3& u, 
 
 }  // namespace
 
-/// Evaluates the motion `present`: sets the impulses r_i = P(start_i - u_i / (softness D_i)), and the velocities of the
-/// region and `produced` to the motion that these impulses produce. u_i: contact velocity. D_i: mobility. P(z): impulse
-/// of Coulomb's law for a contact that the impulse z would stop. `softness`: compliance of the contacts as a fraction
-/// of D_i. With d = produced - present and the inertia matrix K, sets the right-hand side to K d and returns the merit
-/// d . K d [J].
+/// Evaluates the motion `present`: sets the impulses r_i = P(start_i - u_i / (softness D_i)) with P of LawImpulse, the
+/// contact velocity u_i and the mobility D_i. `softness`: compliance of the contacts as a fraction of D_i. Sets the
+/// velocities of the region and `produced` to the motion that these impulses produce. With d = produced - present and
+/// the inertia matrix K, sets the right-hand side to K d and returns the merit d . K d [J].
 ///
 /// Unless `evaluation` is `value`, the function also builds the matrix. If `evaluation` is `turns`, and the region has
 /// implicit bodies, it also marks contacts whose sliding direction is opposite to that in the last matrix.
@@ -434,10 +434,10 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    // If the error of the region has decreased, a round ends when the square root of the merit function d . K d falls
-    // below this fraction of the error at the start of the round, times the scale of errors.
+    // A round ends when sqrt(d . K d), the square root of the merit function, is at most `enough` scale_ e, where e is
+    // the relative error of the region at the start of the round, and scale_ its scale [sqrt(J)].
     constexpr Real enough = 0.1;
-    // If the error has not decreased, the round must be solved more accurately: `solved` multiplies the bound above.
+    // If the error is not yet below e, `solved` multiplies this bound: the round must then be solved more accurately.
     constexpr Real solved = 1e-3;
     constexpr Index max_steps_in_round = 14;  // upper limit; a longer round is unlikely to converge soon
     constexpr Real softer = 10;               // factor by which the softness grows after a round that did not converge

@@ -75,8 +75,8 @@ SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index 
     // bodies, which a round leaves out. If it is below the compliance of the bodies, rounds reduce the error too
     // little.
     constexpr Real softness = 0.3;
-    // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
-    // start of the round, times the scale of errors.
+    // A round ends when sqrt(d . K d), the square root of the merit function, is at most `enough` scale_ e, where e is
+    // the relative error of the region at the start of the round, and scale_ its scale [sqrt(J)].
     constexpr Real enough = 0.01;
     // Another round follows if the error after a round is below this fraction of the error before the round.
     constexpr Real gain = 0.5;

@@ -42,8 +42,8 @@ private:
 /// Runs of the contacts of one region. Memory is reused for the next region.
 class ContactRuns {
 public:
-    /// A run: consecutive contacts, and the range of patches with the nodes of these contacts. A patch contains the
-    /// nodes of one body.
+    /// A run: the contacts from `begin` up to, but not including `end`, and in the same way the patches from
+    /// `first_patch` to `last_patch`. A patch lists the nodes of these contacts that are on one body.
     struct Run {
         Index begin, end;
         std::size_t first_patch, last_patch;
@@ -85,8 +85,9 @@ private:
     /// Nodes of the run that move when an impulse acts on one node of a contact. `count` is 0 if this node is on no
     /// implicit body.
     struct MovedNodes {
-        // `first`: index in node_ of the first moved node. `self`: index in node_ of the node on which the impulse
-        // acts. `row`: index in block_ of the first of `count` blocks.
+        // `first`: index in node_ of the first of `count` moved nodes. `self`: index in node_ of the node on which the
+        // impulse acts. `row`: index in block_ of the first of `count` blocks, the responses of the moved nodes to the
+        // impulse.
         std::size_t first, count, self, row;
     };
 

@@ -24,10 +24,10 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 /// The equation is solved with `first`; the block `leader` gets mobility 0, so sweeps skip it.
 void load_mimic(const LoadedJoint& first, const LoadedJoint& leader);
 
-/// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The position
-/// error at the end of the step is predicted from the velocities of the region. The correction speed is bounded, so a
-/// part of the error may remain for later steps; this part is subtracted. The difference divided by h is added to the
-/// offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
+/// Corrects the offset of a joint by one Newton step, so that the joint holds at the end of the step. The velocities of
+/// the region predict the position error at that time. Since the correction speed is bounded, a part of the present
+/// error may remain for later steps. The predicted error minus this part, divided by h, is added to the offset. Returns
+/// the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const LoadedJoint& loaded);
 

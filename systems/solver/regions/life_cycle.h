@@ -132,8 +132,9 @@ bool start_region(const RegionStage& stage, const Region& region, Op& op, Region
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
         // If the scale is zero, nothing moves, and zero impulses are the solution. The relative error of any other
-        // start would be infinite. Regions whose contacts separate use the warm start, too: with a fixed number of
-        // iterations, a sweep must not depend on how contacts are split into regions.
+        // start would be infinite. With a fixed number of iterations, sweeps must not depend on how contacts are split
+        // into regions. So a region whose contacts all separate uses the warm start, too, as it would within a larger
+        // region.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region, op);
         return false;
     }

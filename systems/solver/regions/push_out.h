@@ -28,8 +28,8 @@ concept RegionOperator = ContactOperator<Op> &&
 struct PushedContacts {
     /// True if rotation of bodies may reduce gaps.
     bool any_rotation() const { return false; }
-    /// Rate of change of a contact's gap by rotation if rotation shrinks the gap, otherwise 0; it is never positive
-    /// [m/s]
+    /// Rate of change of a contact's gap because a rotating body moves the contact point on an arc instead of a
+    /// straight line; 0 if the arc does not shrink the gap. It is never positive [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
     /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4>) const { return 0; }
@@ -102,9 +102,9 @@ private:
 
     void sweep(Real requested) {
         if (sweep_rows(region_.tolerance * region_.tolerance * requested, false)) return;
-        // Joints and ties can prevent a contact from being pushed apart. In this case they take precedence, and the
-        // last sweeps are over joints and ties only. Otherwise their positions would keep an error, and the next
-        // velocity solve would demand a motion that the contact forbids.
+        // Joints and ties can prevent a contact from being pushed apart, so that these sweeps do not converge. Joints
+        // and ties then take precedence: the last sweeps visit only them. Otherwise their positions would keep an
+        // error, and the next velocity solve would demand a motion that the contact forbids.
         constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
         sweep_rows(rounding * requested, true);
     }
@@ -139,9 +139,9 @@ private:
 
 /// Finds frictionless pseudo velocities p, which move positions only. p_n: normal part of p. u_n: normal velocity of a
 /// contact after the velocity solve. Contacts that penetrate by more than the slop (push_slop) get u_n + p_n >=
-/// min(recovery |gap| / h, recovery_speed); push_speed limits the right-hand side further. At other contacts p allows
-/// no approach that the velocity solve would not allow. The solution of the velocity solve must already be in
-/// `stage.out`. The result is in region.memory.scratch. Returns false if no contact is pushed.
+/// min(recovery |gap| / h, recovery_speed); push_speed limits the right-hand side further. At any other contact, the
+/// push may close the gap that remains after the velocity solve, but not more. The solution of the velocity solve must
+/// already be in `stage.out`. The result is in region.memory.scratch. Returns false if no contact is pushed.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);

@@ -87,12 +87,12 @@ struct RegionMemory {
     // friction
     Column<std::uint8_t> region_has_axes;
     Column<std::size_t> node_base;  // by region: index of the first node row of the region
-    // For each cluster and for each body: last region in whose list find_region_blocks has put it, so that no list
-    // contains it twice.
+    // For each cluster and for each body: the region to whose list find_region_blocks has added it last. The function
+    // reads it in order to add nothing to a list twice.
     Column<Index> region_of_cluster, region_of_rigid;
     Column<RigidPart> rigid_part;  // by contact; empty if no step has needed BodyOperator
-    // Laws of joints, by row. Only regions with joints or cables have such rows. These rows follow the rows of all
-    // contacts, so entry 0 belongs to row `contact_rows`.
+    // Law of each joint row. Joint rows follow the rows of all contacts, so the law of row k is entry
+    // k - contact_rows. The other rows of regions with joints or cables have unused entries.
     Column<JointLaw> joint_law;
     Column<CableLaw> cable_law;   // by solved cable
     Column<Real> cable_mobility;  // mobility matrices of all cables (CableBlock::mobility) [1/kg]

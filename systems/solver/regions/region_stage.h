@@ -37,9 +37,9 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
 
 SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
 
-/// Tolerance of a region with the contacts `row`. If all its bodies are still, it is the smaller of
-/// SolverSettings::still_tolerance and SolverSettings::tolerance, otherwise the latter. With a greater tolerance the
-/// solver error would keep still bodies from coming to rest (docs/methods/errors.md 7).
+/// Tolerance of a region with the contacts `row`: SolverSettings::tolerance, or the smaller still_tolerance if all
+/// bodies of these contacts are still. With a greater tolerance, solver errors would give such bodies velocities that
+/// keep them awake (docs/methods/errors.md 7).
 Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
 /// Memory of one region: `count` entries of the columns by contact from index `base` on, and node.size() entries of the
@@ -62,8 +62,8 @@ Real dissipated_by(const RegionStage& stage, Index row);
 /// [J]. Contact forces are not included. The work is accurate to first order in h p. `own_masses`: true if the region
 /// has neither clusters nor rigid bodies.
 ///
-/// The force on a node times h is the change of momentum of the node minus its contact impulses. For a node of a
-/// cluster this would need the coupled masses of all its nodes, so the force times h is read from
+/// The force on a node, times h, is the change of momentum of the node minus its contact impulses. The momentum of a
+/// node of a cluster involves the coupled masses of all nodes of the cluster, so h times its force is read from
 /// RegionInputs::cluster_kick.
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 

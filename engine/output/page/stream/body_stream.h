@@ -72,8 +72,8 @@ private:
     Lattice lattice_;
     std::vector<Index> node_;                      // node number within the body, by vertex
     std::vector<std::array<Index, 3>> triangles_;  // triangle corners as vertex numbers
-    // Lattice coordinates of each vertex: now_ in the last encoded frame, before_ in the frame before that one. next_
-    // is working memory.
+    // Vertex positions as coordinates on lattice_ (integers): now_ in the last encoded frame, before_ in the frame
+    // before that one. next_ is working memory.
     std::vector<Code3> now_, before_, next_;
     int frames_ = 0;
     std::array<Values, page_field_count> values_;

@@ -49,8 +49,8 @@ private:
         std::array<Index, 4> node;
         std::array<std::int64_t, number_count> code;
     };
-    /// Sorts the indices of the contacts of the previous frame by partners and nodes into order_prev_, in which find()
-    /// searches. Contacts with equal partners and nodes keep their order.
+    /// Stores the indices of the contacts of the previous frame in order_prev_, sorted by partners and nodes, so that
+    /// find() can use a binary search. Contacts with equal partners and nodes keep their order.
     void sort_rows();
     Index find(const ContactSides& sides, const std::array<Index, 4>& node) const;
 

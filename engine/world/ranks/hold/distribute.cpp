@@ -54,11 +54,12 @@ RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> own_messag
 }
 
 /// Number of messages (batches) in which a rank sends its bodies to another rank. With several messages, only a part of
-/// the bodies is in memory twice at a time.
+/// the bodies is in memory twice at a time, as table rows and as a message.
 constexpr Index batches = 8;
 
-/// Message with the table rows of the marked bodies of one batch. In the first batch it also contains the contact data
-/// of the pairs that the rank `pairs_of` owns. `with_records`: true if it contains the BodyRecord of each body.
+/// Message with the table rows of those marked bodies that belong to one batch. The first message also contains the
+/// contact data of the pairs that the rank `pairs_of` searches (WholeWorld::pair_owner). `with_records`: true if the
+/// message contains the BodyRecord of each body.
 RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> marked, Index batch, int pairs_of,
                              bool with_records) {
     const WholeWorld& whole = world.ranks.whole;
@@ -111,8 +112,8 @@ std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSetti
     return extents;
 }
 
-/// Returns a divided world as bytes, without the bodies that single ranks own. Kinematic bodies stay, because every
-/// rank has them.
+/// Returns the bytes of the part of a divided world that rank 0 sends to all other ranks: the world without the bodies
+/// that single ranks own. Kinematic bodies stay, because every rank has them.
 std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     World world = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(world);
@@ -258,7 +259,9 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
         refuse_division("world", "a world that is already divided", "an undivided world",
                         "call distribute() only once");
     if (ranks.size() == 1) return require_divisible(undivided);
-    const ArithmeticScope arithmetic;  // clusters chosen here must round as in advance()
+    // Sets the floating-point mode of advance(), so that the elements chosen here for implicit integration are the same
+    // as there.
+    const ArithmeticScope arithmetic;
     act_together(&ranks, [&] {
         const std::vector<BodyExtent> extents =
             ranks.rank() == 0 ? send_parts(world, ranks, settings) : receive_part(world, ranks, settings);

@@ -73,7 +73,7 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
 struct SearchHeader {
     std::uint64_t extents, requests, stale;
     // 1: bodies must not get new owners, because this rank stores crossings of surfaces that an earlier attempt at the
-    // present step has found
+    // present step has found. Stored crossings are not sent to new owners.
     std::uint64_t keeps_owners;
 };
 
@@ -171,7 +171,8 @@ public:
         return !contains(before_.holders[p], rank) || rank == owner_[world_row] ||
                stale_[static_cast<std::size_t>(before_.unit[world_row])] != 0;
     }
-    /// True if `rank` keeps the rows of a body that it has already: it still holds the body and gets no new rows.
+    /// True if `rank` already has the rows of a body and keeps them. This holds for a kinematic body, which all ranks
+    /// have, and for a body that `rank` still holds and of which it gets no new rows.
     bool is_kept(Index world_row, int rank) const {
         return before_.owner[world_row] == WholeWorld::everywhere ||
                (contains(holders_[static_cast<std::size_t>(world_row)], rank) && !is_sent(world_row, rank));
@@ -275,10 +276,11 @@ struct GhostMotion {
     }
 };
 
-/// Finds whether a body may leave the box with which its holders were found: its path since the last rank search, plus
-/// its motion in this step, is not below its margin. The motion is the larger of two values: the reach of the collision
-/// search, which follows from the speed at the start of the step, and the path at the greatest speed in this attempt,
-/// after forces and contacts. Also requests a rank search if the last one was steps_between_searches steps ago.
+/// Finds whether a body may leave the box with which its holders were found. It cannot leave the box if its path since
+/// the last rank search, plus its motion in this step, is below its margin. The motion is the larger of two values: the
+/// bound of the collision search (body_reach), which follows from the speed at the start of the step, and the path at
+/// the greatest speed in this attempt, after forces and contacts. Also requests a rank search if the last one was
+/// steps_between_searches steps ago.
 void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
                   const RunCounters& run, const std::uint64_t& searched_step, RankFindings& own_findings) {
     const std::span<const Real> reach = search.memory.body_reach;

@@ -14,8 +14,8 @@ namespace skerry {
 /// Costs and boxes of marked bodies, in the order of their rows in the undivided world. `marked`: by row of BodyTable.
 std::vector<BodyExtent> extents_of(const WorldState& world, std::span<const std::uint8_t> marked);
 
-/// Sets the columns of RankState that follow from the owners and holders of all bodies. `extents`: extents of the
-/// bodies, with whose boxes the holders were found.
+/// Sets the columns of RankState that follow from the owners and holders of all bodies. `extents`: boxes and margins of
+/// the bodies, from which find_holders has found the holders.
 void note_holders(RankState& ranks, std::span<const BodyExtent> extents);
 
 /// Lists the stage that tests whether holders must be found again: a body may leave its BodyExtent::box in this step,

@@ -34,9 +34,9 @@ struct WholeWorld {
     // records of bodies that this rank does not hold: complete on rank 0, only names on all other ranks
     std::vector<BodyRecord> records;
     std::vector<Index> world_row_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
-    // For each table row that connects bodies, such as a joint: its row in the undivided world. There is one list for
-    // each table, in the order of Model::for_each_joining, and a last one for attachments. Each list is indexed by
-    // handle slot.
+    // Rows, in the undivided world, of the table rows that connect bodies, such as joints. There is one list for each
+    // table, in the order of Model::for_each_joining, and a last one for attachments. Each list is indexed by handle
+    // slot.
     std::vector<std::vector<Index>> joining_world_row;
     // For each row of the undivided world: ranks that hold the body, ascending.
     std::vector<std::vector<int>> holders;

@@ -17,8 +17,9 @@ struct MailedNode {
     Vec3 velocity = Vec3::Zero(), push = Vec3::Zero();  // NodeTable: velocity_next, push_out [m/s]
 };
 
-/// Contact impulse and moment of the frame of a rigid or implicit body, and its push-out velocity and spin, which
-/// reduce overlaps (RigidBodyTable). A record with body == no_index ends a list.
+/// Contact impulse and moment on a rigid body, or on the frame of an implicit body, relative to which the body deforms.
+/// Also the push-out velocity and spin of the body or frame, which reduce overlaps (RigidBodyTable). A record without
+/// body (no_index) ends a list.
 struct MailedBody {
     Index body = no_index;  // row of the body in the undivided world
     Index deforming = 0;    // number of records MailedDeformation that follow
@@ -135,8 +136,9 @@ public:
 private:
     bool is_solved_here(Index body) const { return regions_.elsewhere.empty() || !regions_.elsewhere[body]; }
 
-    /// Sets the impulses of hold rows (contact rows that hold nodes along single directions) to zero if they are in no
-    /// region of this rank. Another rank solves them. Here they still contain the initial impulses of a solver.
+    /// Sets the impulses of hold rows (contact rows that hold nodes along single directions) to zero if another rank
+    /// solves them. Such rows are in no region of this rank, and still contain the impulses with which a solver would
+    /// start.
     void zero_left_out_rows() {
         for (std::size_t row = regions_.contact_count + rows_.tie_count; row < rows_.region.size(); ++row)
             if (rows_.region[row] == no_index) out_.impulse[row].setZero();
@@ -189,8 +191,8 @@ private:
     }
 
     /// Calls visit(unit, number) for each result of the joints, ties and cables in the units (sets of connected bodies)
-    /// for which wants(unit) is true. `unit`: first body of the unit. All ranks that hold a unit have its rows in the
-    /// same order, so messages need not name the rows.
+    /// for which wants(unit) is true. `unit`: first body of the unit. `number`: for example an impulse or an energy.
+    /// All ranks that hold a unit have its rows in the same order, so messages need not name the rows.
     void for_each_result_of_units(auto&& wants, auto&& visit) {
         if (regions_.unit.empty()) return;
         const auto wanted_unit = [&](Index body) {
@@ -217,9 +219,10 @@ private:
         }
     }
 
-    /// Writes one message for each peer. It has RegionTable::pushed, the impulses of the contacts that the peer has
-    /// sent, and then lists of nodes, bodies, hold rows and units. An empty record ends each list. The results of the
-    /// joints, ties and cables of these units come last.
+    /// Writes one message for each peer. It begins with RegionTable::pushed (nonzero if the solver has pushed bodies
+    /// out of overlaps) and the impulses of the contacts that the peer has sent. Then come lists of nodes, bodies, hold
+    /// rows and units; an empty record ends each list. The results of the joints, ties and cables of the listed units
+    /// come last.
     void send() {
         const std::size_t peers = bodies_.peers.size();
         RankMail& mail = regions_.mail;

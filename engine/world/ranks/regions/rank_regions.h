@@ -24,8 +24,8 @@ struct NodeName {
     auto operator<=>(const NodeName&) const = default;
 };
 
-/// Label of a contact region: the least name among the first nodes of its groups (nodes that move together). The rank
-/// that owns the body `least.body` solves the region.
+/// Label of a contact region: the least NodeName among the first nodes of its groups (nodes that move together). The
+/// rank that owns the body `least.body` solves the region.
 struct RegionLabel {
     NodeName least;
     std::int32_t owner = 0;  // rank
@@ -99,12 +99,16 @@ struct RankRegions {
     Column<Index> touched_bodies;
     bool pushed = false;  // true if another rank has computed a push-out of nodes of this rank in this attempt
 
-    UnionFind sets;       // joins groups of nodes that contacts connect; later marks visited nodes
+    // Joins groups of nodes that contacts connect. After the solve, its nodes serve a second purpose: list_moved marks
+    // in them the nodes that it has visited.
+    UnionFind sets;
     UnionFind body_sets;  // sets of joined bodies
     // by body; valid at the roots of `body_sets`: 1 if a joint, tie or cable acts on the set
     Column<std::uint8_t> in_unit;
     Column<RegionLabel> label;  // by node; valid at the nodes in `group`
-    Column<Index> group;        // first nodes of groups: those that contacts of this rank touch, and units that it owns
+    // First nodes of the groups that contacts of this rank touch, and of the units that this rank owns. All nodes of
+    // such a unit form one group.
+    Column<Index> group;
     Column<Index> group_of;     // by contact: first node of one of its groups; no_index: none of its nodes can move
     // by node; valid at the roots of `sets`: 1 if another rank has sent a label for a group of the region
     Column<std::uint8_t> open;

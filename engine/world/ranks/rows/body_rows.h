@@ -42,8 +42,8 @@ struct BodyRows {
     std::vector<BodyRecord> records;
 };
 
-/// Returns true for pairs whose contact data are copied with the rows of bodies, or kept (replace_rows). `pair`:
-/// ContactKey::pair.
+/// Selects pairs by their key `pair` (ContactKey::pair). rows_of_bodies copies the contact data of the pairs for which
+/// it returns true, and replace_rows keeps the contact data of these pairs.
 using WantsPair = std::function<bool(std::uint64_t pair)>;
 
 /// Returns copies of the rows of marked bodies. The world must have no pending changes (WorldState::settle). The marked

@@ -188,8 +188,9 @@ private:
         }
     }
 
-    /// Appends the progress of the stable-step checks, which visit the bodies one after the other. All ranks have come
-    /// equally far, so the checks go on at the first new row whose source has not checked it.
+    /// Appends the progress of the evaluation of stable steps (StepWatch), which visits one body after the other. In
+    /// the order of the undivided world, all ranks have come equally far. So the evaluation goes on at the first new
+    /// row that it had not yet finished on the rank from which the row comes.
     void append_watch() {
         StepWatch& watch = to_.watch;
         for (const Pick& pick : picks_) {

@@ -24,9 +24,9 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
 }
 
 /// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]. It is the
-/// sum of a bound for the filling, whose pressure depends on the volume, and a bound for pressure forces that follow
-/// the faces as these rotate. Implicit bodies get only the first. `p`: largest pressure [Pa]. `stiffness`: decrease of
-/// pressure per increase of volume [Pa/m^3].
+/// sum of two bounds: one for the filling, whose pressure depends on the volume, and one for the rotation of pressure
+/// forces with the faces. For implicit bodies it is only the bound for the filling. `p`: largest pressure [Pa].
+/// `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
