@@ -288,7 +288,7 @@ JointState Joints::state(JointHandle joint) const {
 JointState joint_state(const Model& model, JointHandle joint) {
     const auto j = static_cast<std::size_t>(model.row(joint, "joint"));
     const JointInputs joints = JointInputs::bind({}, model.joints, model.bodies, model.rigid_bodies, model.any_asleep);
-    const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
+    const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
                      second = joints.place(joints.second[j], joints.second_frame[j]);
     JointState now;
     now.kind = joints.kind[j];

@@ -36,7 +36,7 @@ constexpr Real most_moment = 0.01, of_lumping = 0.25;
 constexpr std::size_t largest_cluster = 1024;
 /// Assumed stiffness of the elements of clusters, divided by their stiffness at rest. Cluster matrices are computed
 /// with this stiffness, so that steps stay stable while strain stiffens the elements.
-constexpr Real headroom = 4;
+constexpr Real stiffness_ratio = 4;
 /// Bodies with more nodes than this count as large. A step length is rejected if more than the fraction
 /// most_volume_of_large of the volume of a large body would be implicit. The implicit elements would then probably form
 /// a cluster larger than largest_cluster. This test is faster than the search for implicit elements.
@@ -172,7 +172,7 @@ public:
         start(b, twins);
         const SavedElements saved(model_, twins.searched);
         const ImplicitShare share = twins.search->find(
-            {step, step / gain_of_forms, headroom, twins.most_moment, largest_cluster, model_.nodes.inverse_mass});
+            {step, step / gain_of_forms, stiffness_ratio, twins.most_moment, largest_cluster, model_.nodes.inverse_mass});
         const Assessment found = assess(model_, twins.searched, share, twins.most_moment);
         Result result{step, found, SavedElements(model_, twins.searched)};
         saved.restore(model_, twins.searched);
@@ -387,7 +387,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present_step,
     const Assessment found =
         assess(model, body,
                add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
-                                     {cluster_step, step, headroom, largest_moment}, stiffness_sum,
+                                     {cluster_step, step, stiffness_ratio, largest_moment}, stiffness_sum,
                                      outputs_of(model, blocks), kernels().element_bounds),
                largest_moment);
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (steps_per_inversion * step);

@@ -19,7 +19,7 @@ bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads,
                        const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                        std::span<Vec3> out);
 /// Makes a sleeping body ready for a long step that starts with this short step. Contacts of this short step then use
-/// the matrix of the long step with LongStep::weight = 1.
+/// the matrix of the long step with LongStep::response_factor = 1.
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff);
 
 /// Computes displacements and velocities at the end of the short step. If the long step ends with this short step, the

@@ -55,13 +55,13 @@ bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts
     // Lower limit on the share of the mobility (inverse mass) along the normal that the held directions leave to the
     // nodes. Below this limit the gap counts as unable to change.
     constexpr Real least_share = 1e-6;
-    Real all = 0, left = 0;
+    Real all = 0, free_mobility = 0;
     for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {
         const Real mobility = weight * weight * inputs.inverse_mass[n];
         all += mobility;
-        left += mobility * (1 - contacts.normal[c].dot(node[n].held * contacts.normal[c]));
+        free_mobility += mobility * (1 - contacts.normal[c].dot(node[n].held * contacts.normal[c]));
     });
-    return left > least_share * all;
+    return free_mobility > least_share * all;
 }
 
 /// Key of the row for one held direction of an entry. ContactTable is in key order and these rows are its last, so the
@@ -88,11 +88,11 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         // minus the work of all other forces. Their impulse is mass * gained - impulse. Their work is counted at the
         // end velocity, or with leapfrog (lag = 0) at the mean velocity. For gravity and loads it is counted over h
         // instead of kick (measure_work).
-        const Real during = lag == 0 ? held.speed - gained / 2 : held.speed;
-        sum.work += impulse * during;
+        const Real mean_speed = lag == 0 ? held.speed - gained / 2 : held.speed;
+        sum.work += impulse * mean_speed;
         if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;
-        sum.work -= (h - kick) * inputs.mass[held.node] * held.direction.dot(inputs.gravity) * during;
-        if (!inputs.load.empty()) sum.work -= (h - kick) * held.direction.dot(inputs.load[held.node]) * during;
+        sum.work -= (h - kick) * inputs.mass[held.node] * held.direction.dot(inputs.gravity) * mean_speed;
+        if (!inputs.load.empty()) sum.work -= (h - kick) * held.direction.dot(inputs.load[held.node]) * mean_speed;
     });
     return all;
 }
