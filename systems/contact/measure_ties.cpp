@@ -11,7 +11,7 @@ namespace {
 
 /// Velocity of a tied point before the step plus its velocity after the step [m/s]. On an explicit body the point moves
 /// like `node`; on a rigid or implicit body the rotation of the frame about `node` is added.
-Vec3 twice_mean(const TieWorkInputs& motion, Index node, const Vec3& point) {
+Vec3 velocity_sum(const TieWorkInputs& motion, Index node, const Vec3& point) {
     const auto n = static_cast<std::size_t>(node);
     Vec3 sum = motion.velocity[n] + motion.velocity_next[n];
     const Index frame = motion.spins.nodes.row(node);
@@ -36,7 +36,7 @@ Vec3 impulse_of(const CableBlockTable& blocks, const CableBlock& tie) {
 
 /// Divides the impulse of tie `t` among its nodes in proportion to their masses. If the force exceeds the limit, all
 /// nodes break off at the time `end` [s], and the result is true.
-bool store_mean(const Vec3& impulse, const TiedMeans& means, std::size_t t, Real end, TieTable& ties) {
+bool store_mean(const Vec3& impulse, const BallTies& means, std::size_t t, Real end, TieTable& ties) {
     const Index first = means.body_nodes[static_cast<std::size_t>(ties.first[t])].begin;
     Index k = ties.nodes[t].begin;
     for_each_share(rows_of(ties.node.span(), ties.nodes[t]), first, means.mass,
@@ -60,7 +60,7 @@ TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& bl
                 continue;
             sum.impulse += weight * impulse;
             sum.work +=
-                weight * impulse.dot(twice_mean(motion, stencil.node[a], point ? *point : motion.position[node])) / 2;
+                weight * impulse.dot(velocity_sum(motion, stencil.node[a], point ? *point : motion.position[node])) / 2;
         }
     };
     rows.impulse.resize(rows.size());
@@ -78,7 +78,7 @@ TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& bl
     return sum;
 }
 
-Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties) {
+Index store_ties(const TieRowTable& rows, const BallTies& means, const TieTimes& times, TieTable& ties) {
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (rows.rests[t]) continue;
         ties.step[t] = acts_for_whole_step(ties, means.body_implicit, t) ? times.h : times.kick;

@@ -27,7 +27,7 @@ Index collider_point_count(ColliderShape shape);
 ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal);
 
 /// True if point k is the first point of a rim: its position depends on the normal of the face (collider_point).
-bool collider_point_follows(ColliderShape shape, Index k);
+bool is_moving_rim_point(ColliderShape shape, Index k);
 
 /// Index of the flat region of a shape in which `point` can move furthest before it leaves the region (flat_reach), or
 /// no_index if the shape has no flat region. A flat region is a volume at a flat or hollow side of the shape, in which
