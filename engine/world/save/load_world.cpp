@@ -126,7 +126,7 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
-    find_holders(model);
+    find_holding_attachments(model);
     // Model::forced tells whether force elements (loads, springs and the like) act. If the last one was removed just
     // before saving, `forced` must stay true in the next step, which counts the work of its last forces. note_forces
     // keeps `forced` true only if it was true before the call, so it is set here.

@@ -29,9 +29,9 @@ constexpr Real entry_cost = 0.7;
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
 /// Upper bound of the moment of inertia that clusters may add to a body with the smallest principal moment I. The bound
-/// is the larger of two values: most_moment * I, and of_lumping times the amount by which lumping of the masses
+/// is the larger of two values: share_of_moment * I, and share_of_lumping times the amount by which lumping of the masses
 /// increases I. In typical meshes the bound is 3 to 20 % of I.
-constexpr Real most_moment = 0.01, of_lumping = 0.25;
+constexpr Real share_of_moment = 0.01, share_of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
 /// Assumed stiffness of the elements of clusters, divided by their stiffness at rest. Cluster matrices are computed
@@ -120,7 +120,7 @@ void note_implicit(Model& model, std::size_t b) {
 /// moment.
 Real largest_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
-    return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
+    return std::max(share_of_moment, share_of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
                                                                 rows_of(model.tetrahedra.volume, blocks),
                                                                 model.nodes.rest_position));
 }
@@ -172,8 +172,8 @@ public:
         start(b, twins);
         const SavedElements saved(model_, twins.searched);
         const ImplicitShare share = twins.search->find(
-            {step, step / gain_of_forms, stiffness_ratio, twins.most_moment, largest_cluster, model_.nodes.inverse_mass});
-        const Assessment found = assess(model_, twins.searched, share, twins.most_moment);
+            {step, step / gain_of_forms, stiffness_ratio, twins.largest_moment, largest_cluster, model_.nodes.inverse_mass});
+        const Assessment found = assess(model_, twins.searched, share, twins.largest_moment);
         Result result{step, found, SavedElements(model_, twins.searched)};
         saved.restore(model_, twins.searched);
         result.elements.restore(model_, b);
@@ -189,7 +189,7 @@ private:
     };
     struct TwinGroup {
         std::size_t bodies = 0, searched = 0;
-        Real most_moment = 0;                    // see largest_moment_of
+        Real largest_moment = 0;                   // see largest_moment_of
         std::optional<ImplicitSearch> search{};  // created when it is first used
         std::vector<Result> results{};
     };
@@ -204,7 +204,7 @@ private:
         twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
                              stiffness_sum_, outputs_of(model_, blocks), kernels().element_bounds);
         twins.searched = b;
-        twins.most_moment = largest_moment_of(model_, b);
+        twins.largest_moment = largest_moment_of(model_, b);
     }
     Model& model_;
     std::span<Real> stiffness_sum_;
