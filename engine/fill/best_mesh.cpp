@@ -4,9 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include "engine/mesh/repair/remove_flat_triangles.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
-#include "engine/mesh/repair/remove_flat_triangles.h"
 
 namespace skerry::mesh {
 
@@ -82,8 +82,9 @@ void try_fill(const SurfaceMesh& surface, const std::string& surface_name, const
     }
 }
 
-/// Removes very flat triangles from the surface within the tolerance. remove_flat_triangles checks the distance to the old surface at few points
-/// only. If a full check then finds a distance above `tolerance`, remove_flat_triangles runs again with a smaller tolerance.
+/// Removes very flat triangles from the surface within the tolerance. remove_flat_triangles checks the distance to the
+/// old surface at few points only. If a full check then finds a distance above `tolerance`, remove_flat_triangles runs
+/// again with a smaller tolerance.
 RepairedSurface repaired_within_tolerance(const SurfaceMesh& surface, Real tolerance) {
     constexpr int tries = 4;
     constexpr Real reduction = 0.75;

@@ -45,12 +45,12 @@ struct VelocityRow {
 /// The quantity of an equation that stays as it was in the step when the contact impulses change.
 /// - velocity: its velocity; its impulse in the step is known.
 /// - impulse: its impulse.
-/// - held: its velocity; its impulse in the step is not known (see find_held_impulses()).
-enum class Keeps { velocity, impulse, held };
+/// - velocity_with_unknown_impulse: its velocity; its impulse in the step is not known (see find_held_impulses()).
+enum class KeptQuantity { velocity, impulse, velocity_with_unknown_impulse };
 
 struct EquationRow {
     VelocityRow row;
-    Keeps keeps = Keeps::velocity;
+    KeptQuantity keeps = KeptQuantity::velocity;
     Real impulse = 0;  // [N s] or [N m s]
 };
 
@@ -189,12 +189,12 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
                 for (const auto& term : row.frames) rows.back().row.add_frame(term.frame, term.along, term.turn);
                 continue;
             }
-            rows.push_back({std::move(row), Keeps::velocity, impulse.z() / c});
+            rows.push_back({std::move(row), KeptQuantity::velocity, impulse.z() / c});
             continue;
         }
         for (Index k = 0; k < 3; ++k)
             rows.push_back({row_of_joint(block, inputs, block.frame.col(k)),
-                            k == 2 && !block.axis.locked ? Keeps::impulse : Keeps::velocity, impulse[k]});
+                            k == 2 && !block.axis.locked ? KeptQuantity::impulse : KeptQuantity::velocity, impulse[k]});
     }
 }
 
@@ -208,7 +208,8 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
         for (Index k = 0; k < (is_weld ? 3 : 1); ++k)
             rows.push_back({mobilities.of_stencil(ties.stencil[i], is_weld ? Vec3(Vec3::Unit(k)) : ties.impulse[i],
                                                   &ties.point[i]),
-                            is_weld ? Keeps::velocity : Keeps::impulse, is_weld ? ties.impulse[i][k] : 1});
+                            is_weld ? KeptQuantity::velocity : KeptQuantity::impulse,
+                            is_weld ? ties.impulse[i][k] : 1});
     }
 }
 
@@ -219,7 +220,7 @@ void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mo
     Vec3 last = Vec3::Zero();
     for (Index p = block.points.begin; p < block.points.end; ++p) {
         const Vec3 next = cables.impulse[p] * cables.direction[p];
-        rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), Keeps::impulse, 1});
+        rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), KeptQuantity::impulse, 1});
         last = next;
     }
 }
@@ -235,7 +236,7 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
             sum.nodes.insert(sum.nodes.end(), row.nodes.begin(), row.nodes.end());
             for (const auto& frame : row.frames) sum.add_frame(frame.frame, frame.along, frame.turn);
         }
-        rows.push_back({std::move(sum), Keeps::velocity, cables.impulse[block.points.begin + k]});
+        rows.push_back({std::move(sum), KeptQuantity::velocity, cables.impulse[block.points.begin + k]});
     }
 }
 
@@ -277,7 +278,7 @@ std::vector<Real> normal_mobilities(const ContactProblem& problem) {
 }
 
 /// Equations and contacts that act on the same coupled masses.
-struct Group {
+struct CoupledEquations {
     std::vector<EquationRow*> kept_velocity, kept_impulse;
     std::vector<Index> contacts;  // indices of the contacts in ContactProblem
 };
@@ -303,14 +304,14 @@ Eigen::VectorXd impulses_of(const std::vector<EquationRow*>& equations) {
     return impulses;
 }
 
-/// Finds the impulses of the rows of the kind Keeps::held from the condition that the velocities of these rows stay as
-/// before the solve. `E`: velocity change of each equation per unit impulse of each equation. `rate_by_others`:
-/// velocity changes of all equations due to contacts and known impulses.
+/// Finds the impulses of the rows of the kind KeptQuantity::velocity_with_unknown_impulse from the condition that the
+/// velocities of these rows stay as before the solve. `E`: velocity change of each equation per unit impulse of each
+/// equation. `rate_by_others`: velocity changes of all equations due to contacts and known impulses.
 void find_held_impulses(const Eigen::MatrixXd& E, const Eigen::VectorXd& rate_by_others,
                         const std::vector<EquationRow*>& equations) {
     std::vector<Index> held;
     for (std::size_t k = 0; k < equations.size(); ++k)
-        if (equations[k]->keeps == Keeps::held) held.push_back(static_cast<Index>(k));
+        if (equations[k]->keeps == KeptQuantity::velocity_with_unknown_impulse) held.push_back(static_cast<Index>(k));
     if (held.empty()) return;
     const Eigen::VectorXd rate = rate_by_others + E * impulses_of(equations);
     const Eigen::VectorXd found = -(inverse_of(E(held, held)) * rate(held));
@@ -332,7 +333,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     for (const HeldDirection& held : equations.held)
         rows.push_back({mobilities.of_stencil({{held.node, held.node, held.node, held.node}, {1, 0, 0, 0}},
                                               held.direction, nullptr),
-                        Keeps::held, 0});
+                        KeptQuantity::velocity_with_unknown_impulse, 0});
     std::erase_if(rows, [&](const EquationRow& equation) { return mobilities.leader(equation.row) == no_index; });
     if (rows.empty()) return {};
     UnionFind sets;
@@ -340,10 +341,10 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     for (const EquationRow& equation : rows)
         mobilities.for_each_leader(equation.row,
                                    [&](Index leader) { sets.join(mobilities.leader(equation.row), leader); });
-    std::map<Index, Group> groups;  // by the root of the union-find set of their leaders in `sets`
+    std::map<Index, CoupledEquations> groups;  // by the root of the union-find set of their leaders in `sets`
     for (EquationRow& equation : rows) {
-        Group& group = groups[sets.root(mobilities.leader(equation.row))];
-        (equation.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);
+        CoupledEquations& group = groups[sets.root(mobilities.leader(equation.row))];
+        (equation.keeps == KeptQuantity::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);
     }
     std::vector<std::array<VelocityRow, 3>> of_contact;
     for (std::size_t i = 0; i < contact.size(); ++i) {

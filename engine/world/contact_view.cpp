@@ -76,8 +76,8 @@ void view_contacts(WorldState& world) {
         const auto row = static_cast<std::size_t>(rests ? ~rows[i] : rows[i]);
         Contact& contact = record.contact_view[i] = contact_at(world.model, table, row);
         if (rests) contact.impulse *= kick_time / resting.step[row];
-        const bool for_force_time =
-            rests || acts_for_force_time(world.model, table.first_body[row]) || acts_for_force_time(world.model, table.second_body[row]);
+        const bool for_force_time = rests || acts_for_force_time(world.model, table.first_body[row]) ||
+                                    acts_for_force_time(world.model, table.second_body[row]);
         contact.seconds = for_force_time ? kick_time : step_time;
     }
     record.contact_view_is_current = true;

@@ -90,11 +90,11 @@ private:
         bool is_contact = region == CylinderRegion::end;
         if (region == CylinderRegion::side)
             is_contact = vertex_can_touch_axis(inputs.surface, inputs.position, vertex,
-                                           cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
-                                           cylinder_.motion.rotation.col(2), scale);
+                                               cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
+                                               cylinder_.motion.rotation.col(2), scale);
         if (region == CylinderRegion::rim)
             is_contact = vertex_can_touch_point(inputs.surface, inputs.position, vertex,
-                                            std::max(std::abs(on.distance), scale.edge) * normal, scale);
+                                                std::max(std::abs(on.distance), scale.edge) * normal, scale);
         std::array<Real, 3> weight{};
         weight[k] = 1;
         if (is_contact) add_touch(candidate, static_cast<Index>(k), weight, normal, on.distance);
@@ -117,8 +117,8 @@ private:
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
                 region == CylinderRegion::end || (region == CylinderRegion::side && !parallel && straight_on);
-            if (!edge_can_touch_along(inputs.surface, inputs.position, inputs.surface.triangles.edge[candidate.second][k], normal,
-                            nearly_flat))
+            if (!edge_can_touch_along(inputs.surface, inputs.position,
+                                      inputs.surface.triangles.edge[candidate.second][k], normal, nearly_flat))
                 continue;
             std::array<Real, 3> weight{};
             weight[k] = 1 - touch.s;

@@ -48,8 +48,9 @@ private:
 
     void point_against_triangle(Index c, const CandidateNodes& node, Real speed) {
         const Candidate& candidate = candidates[c];
-        const PointTriangleContact contact = point_triangle_contact(
-            inputs.surface, inputs.position, inputs.position[node[0]], candidate.second, known_scale_, contact_limit, surfaces_);
+        const PointTriangleContact contact =
+            point_triangle_contact(inputs.surface, inputs.position, inputs.position[node[0]], candidate.second,
+                                   known_scale_, contact_limit, surfaces_);
         asleep_until[c] = travel_base + contact.sleep;
         const auto& corner = inputs.surface.triangles.node[candidate.second];
         if (contact.side == Side::none || (is_core(corner) && !core_is_touched(candidate, contact.closest))) return;
@@ -101,8 +102,9 @@ private:
         if (own > 0) return between || own < other || !turned;
         const auto& [a, b, c] = inputs.surface.triangles.node[candidate.second];
         const Vec3& point = inputs.position[inputs.surface.vertices.node[candidate.first]];
-        return between && vertex_can_touch_axis(inputs.surface, inputs.position, candidate.first, closest.nearest - point,
-                                            inputs.position[b] - inputs.position[a], scale);
+        return between &&
+               vertex_can_touch_axis(inputs.surface, inputs.position, candidate.first, closest.nearest - point,
+                                     inputs.position[b] - inputs.position[a], scale);
     }
 
     /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `target`

@@ -64,7 +64,7 @@ private:
     Real smallest_distance_ = infinity;
 
     std::size_t count_ = 0, pair_count_ = 0;
-    PerSlot<CollectedPair> pair_;       // pairs with at least one collected candidate
+    PerSlot<CollectedPair> pair_;   // pairs with at least one collected candidate
     PerSlot<Index> row_;            // index of the collected candidate in the list of its pair
     PerSlot<Candidate> candidate_;  // copy of the collected candidate
     PerSlot<CandidateNodes> node_;

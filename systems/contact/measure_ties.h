@@ -54,7 +54,7 @@ struct BallTies {
     std::span<const Real> mass;                        // by node [kg]
 
     static BallTies bind(const Binder& binder, const CableBlockTable& blocks, const BodyTable& body,
-                          const NodeTable& node) {
+                         const NodeTable& node) {
         return {.blocks = binder.read(blocks),
                 .body_nodes = binder.read(body.nodes),
                 .body_implicit = binder.read(body.implicit),

@@ -76,7 +76,7 @@ struct RigidNodes {
     /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder the point is the
     /// centre. `weight`: the sum of the weights, used only for cylinders.
     Vec3 core_arm(Index node, Real weight, std::size_t contact, const Vec3& normal,
-                     const TouchPoints& touch_points) const {
+                  const TouchPoints& touch_points) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
         return weight * (touch_points.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
     }

@@ -150,7 +150,8 @@ public:
         const FrameMotion second_motion = frame_motion(ties_, frame, point(), no_index);
         Vec3 velocity = Vec3::Zero();
         if (tie.collider[t_] != no_index)
-            velocity = collider_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], target_.point, step_.h);
+            velocity =
+                collider_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], target_.point, step_.h);
         else if (ties_.deforms(second) && frame == no_index)
             velocity = turning_offset(ties_, t_, k_, step_.h);
         else if (!ties_.deforms(second) && frame != no_index && stencil_.weight[1] == 0)

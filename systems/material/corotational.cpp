@@ -34,7 +34,8 @@ Tangent Corotational::tangent(const MaterialConstants& material, const Mat3& F) 
     const Vec3& s = frames.stretch;
     const Real rotation_term = la * (s.sum() - 3) - 2 * mu;
     Vec3 twist;
-    for (Index k = 0; k < 3; ++k) twist[k] = 2 * mu + 2 * rotation_term / std::max(s[(k + 1) % 3] + s[(k + 2) % 3], least);
+    for (Index k = 0; k < 3; ++k)
+        twist[k] = 2 * mu + 2 * rotation_term / std::max(s[(k + 1) % 3] + s[(k + 2) % 3], least);
     return without_softening(frames, 2 * mu * Mat3::Identity() + Mat3::Constant(la), Vec3::Constant(2 * mu), twist);
 }
 

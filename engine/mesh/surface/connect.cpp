@@ -16,7 +16,8 @@ namespace {
 
 /// Divides the given triangles into patches that are connected by edges. Returns true for all triangles of a patch if
 /// an odd number of triangles of the surface, not counting `dropped` ones, meet at an edge of the patch.
-std::vector<bool> patches_with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
+std::vector<bool> patches_with_odd_edge(Triangles triangles, const std::vector<bool>& given,
+                                        const std::vector<bool>& dropped) {
     UnionFind patches;
     patches.start(triangles.size());
     std::vector<Index> at_odd_edge;

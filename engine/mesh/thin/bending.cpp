@@ -148,8 +148,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
     });
 
     // The bending moment is about the same in all columns, so each column bends in proportion to its compliance
-    // (exact/element_energy). Therefore the mean over a part is taken of the compliances, weighted by exact energy. A mean of
-    // the stiffnesses would be dominated by a few slivers.
+    // (exact/element_energy). Therefore the mean over a part is taken of the compliances, weighted by exact energy. A
+    // mean of the stiffnesses would be dominated by a few slivers.
     std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!(exact[c] > 0)) continue;

@@ -180,14 +180,16 @@ bool collisions_off_by_another(const JointTable& table, std::size_t joint) {
 }
 
 /// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset. The
-/// leader can mimic a further joint. MimicRelation relates a joint in this way to its head, the last joint of this chain.
+/// leader can mimic a further joint. MimicRelation relates a joint in this way to its head, the last joint of this
+/// chain.
 struct MimicRelation {
     Index head;
     Real ratio = 1, offset = 0;
 };
 MimicRelation relation_to_head(const JointTable& table, Index joint) {
     MimicRelation relation{joint};
-    for (Index leader; (leader = table.leader[static_cast<std::size_t>(relation.head)]) != no_index; relation.head = leader) {
+    for (Index leader; (leader = table.leader[static_cast<std::size_t>(relation.head)]) != no_index;
+         relation.head = leader) {
         const MimicRow& mimic = table.mimic[static_cast<std::size_t>(relation.head)];
         relation.offset += relation.ratio * mimic.offset;
         relation.ratio *= mimic.ratio;
@@ -289,7 +291,7 @@ JointState joint_state(const Model& model, JointHandle joint) {
     const auto j = static_cast<std::size_t>(model.row(joint, "joint"));
     const JointInputs joints = JointInputs::bind({}, model.joints, model.bodies, model.rigid_bodies, model.any_asleep);
     const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
-                     second = joints.place(joints.second[j], joints.second_frame[j]);
+                    second = joints.place(joints.second[j], joints.second_frame[j]);
     JointState now;
     now.kind = joints.kind[j];
     now.first = handle_of_body(model, model.joints.first[j]);

@@ -295,7 +295,8 @@ TieHandle Ties::add(const TieSettings& tie) {
 void prepare_removal(World& world, TieHandle tie) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.tie_map.row(tie));
-    if (model.ties.parts[row] != 0 && !collisions_off_by_another(model.ties, row)) switch_collisions(world, model, row, true);
+    if (model.ties.parts[row] != 0 && !collisions_off_by_another(model.ties, row))
+        switch_collisions(world, model, row, true);
 }
 
 void release_ties(WorldState& world) {

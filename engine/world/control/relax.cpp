@@ -272,18 +272,20 @@ private:
         for (std::size_t b = 0; b < count; ++b) kinetic_now_[root(b)] += bodies_[b].kinetic;
         for (std::size_t b = 0; b < count; ++b)
             if (moves(b) && kinetic_now_[root(b)] < kinetic_before_[root(b)]) stop_body(state_.model, b);
-        for (std::size_t b = 0; b < count; ++b) kinetic_before_[b] = kinetic_now_[b] < kinetic_before_[b] ? 0 : kinetic_now_[b];
+        for (std::size_t b = 0; b < count; ++b)
+            kinetic_before_[b] = kinetic_now_[b] < kinetic_before_[b] ? 0 : kinetic_now_[b];
     }
     std::size_t root(std::size_t body) { return static_cast<std::size_t>(sets_.root(static_cast<Index>(body))); }
 
     World& world_;
     WorldState& state_;
     RelaxSettings settings_;
-    UnionFind sets_;                     // sets of bodies that joints, ties and the like connect
-    std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
-    std::vector<BodyBalance> bodies_;    // by body
-    std::vector<Real> kinetic_before_, kinetic_now_{};  // kinetic energies before and after this step, by root of a set [J]
-    Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
+    UnionFind sets_;                   // sets of bodies that joints, ties and the like connect
+    std::vector<Vec3> before_;         // velocities of all nodes before the step [m/s]
+    std::vector<BodyBalance> bodies_;  // by body
+    std::vector<Real> kinetic_before_,
+        kinetic_now_{};  // kinetic energies before and after this step, by root of a set [J]
+    Real largest_ = 0;   // largest out-of-balance force of a body so far [N]
 };
 
 /// Stops everything that is prescribed as a function of time, and wakes all bodies.

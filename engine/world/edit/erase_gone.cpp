@@ -171,7 +171,8 @@ void erase_colliders(const RowMoves& moves, Model& model) {
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)
-        lower(node, moves.shift_to_start[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
+        lower(node,
+              moves.shift_to_start[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
     for (Index& body : clusters.body) lower(body, moves.shift_to_start[static_cast<std::size_t>(body)].bodies);
     clusters.cluster_of.erase(moves.removed.nodes);
     clusters.index_in_cluster.erase(moves.removed.nodes);
@@ -185,7 +186,8 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     renumber_clusters(moves, model, model.clusters);
     model.known_elements.clear();
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
-        if (moves.body_now[b] != no_index) renumber_rows_of_body(model, b, rows_of_body(model, b), moves.shift_to_start[b]);
+        if (moves.body_now[b] != no_index)
+            renumber_rows_of_body(model, b, rows_of_body(model, b), moves.shift_to_start[b]);
     const OfBodyTables<std::vector<Range>>& removed = moves.removed;
     constexpr auto list_of = OfBodyTables<std::vector<Range>>::members();
     const std::vector<std::vector<AnyColumn>> tables = columns_by_body_table(model);

@@ -332,7 +332,8 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> wa
     for (Peak& peak : colliders_) peak.end_step(step_.kick);
 }
 
-void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t> was_asleep, const StepScratch& scratch) {
+void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t> was_asleep,
+                                const StepScratch& scratch) {
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
         if (model.attachments.slot[a] == no_slot) continue;
         AttachmentRow& row = attachments_[model.attachments.slot[a]];

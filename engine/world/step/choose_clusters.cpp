@@ -29,8 +29,8 @@ constexpr Real entry_cost = 0.7;
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
 /// Upper bound of the moment of inertia that clusters may add to a body with the smallest principal moment I. The bound
-/// is the larger of two values: share_of_moment * I, and share_of_lumping times the amount by which lumping of the masses
-/// increases I. In typical meshes the bound is 3 to 20 % of I.
+/// is the larger of two values: share_of_moment * I, and share_of_lumping times the amount by which lumping of the
+/// masses increases I. In typical meshes the bound is 3 to 20 % of I.
 constexpr Real share_of_moment = 0.01, share_of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
@@ -121,8 +121,8 @@ void note_implicit(Model& model, std::size_t b) {
 Real largest_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
     return std::max(share_of_moment, share_of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
-                                                                rows_of(model.tetrahedra.volume, blocks),
-                                                                model.nodes.rest_position));
+                                                                          rows_of(model.tetrahedra.volume, blocks),
+                                                                          model.nodes.rest_position));
 }
 
 struct Assessment {
@@ -171,8 +171,9 @@ public:
         }
         start(b, twins);
         const SavedElements saved(model_, twins.searched);
-        const ImplicitShare share = twins.search->find(
-            {step, step / gain_of_forms, stiffness_ratio, twins.largest_moment, largest_cluster, model_.nodes.inverse_mass});
+        const ImplicitShare share =
+            twins.search->find({step, step / gain_of_forms, stiffness_ratio, twins.largest_moment, largest_cluster,
+                                model_.nodes.inverse_mass});
         const Assessment found = assess(model_, twins.searched, share, twins.largest_moment);
         Result result{step, found, SavedElements(model_, twins.searched)};
         saved.restore(model_, twins.searched);
@@ -189,7 +190,7 @@ private:
     };
     struct TwinGroup {
         std::size_t bodies = 0, searched = 0;
-        Real largest_moment = 0;                   // see largest_moment_of
+        Real largest_moment = 0;                 // see largest_moment_of
         std::optional<ImplicitSearch> search{};  // created when it is first used
         std::vector<Result> results{};
     };

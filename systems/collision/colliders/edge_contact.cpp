@@ -102,9 +102,9 @@ private:
 };
 
 /// Finds the parameter s along an edge at which the derivative of the distance passes the value `slope`. The search
-/// first tests the kinks and the parameter predicted by DistanceAlongEdge::place_of. Then it narrows the interval by regula falsi
-/// (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and where the
-/// derivative is constant.
+/// first tests the kinks and the parameter predicted by DistanceAlongEdge::place_of. Then it narrows the interval by
+/// regula falsi (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and
+/// where the derivative is constant.
 class SlopeRoot {
 public:
     /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a

@@ -117,11 +117,12 @@ ProfileDistance distance_to_bucket(const Vec3& size, const ProfilePoint& p) {
     ProfileDistance best{-infinity, {0, 1}, p};
     for (const Side& side : sides) {
         const ProfilePoint nearest{std::clamp(p.r, std::min(side.from.r, side.to.r), std::max(side.from.r, side.to.r)),
-                           std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
+                                   std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
         const ProfilePoint offset{nearest.r - p.r, nearest.z - p.z};
         const Real length = norm(offset);
         if (!(-length <= best.distance))  // negated, so that a NaN `length` is stored and returned
-            best = {-length, length > min_length ? ProfilePoint{offset.r / length, offset.z / length} : side.normal, nearest};
+            best = {-length, length > min_length ? ProfilePoint{offset.r / length, offset.z / length} : side.normal,
+                    nearest};
     }
     return best;
 }

@@ -118,7 +118,8 @@ private:
     }
 
     std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
-    // for each face: upper limit of the scalar product of `into_` and a direction for which can_touch_along() is true [m]
+    // for each face: upper limit of the scalar product of `into_` and a direction for which can_touch_along() is true
+    // [m]
     std::array<Real, 2> border_;
     Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;
@@ -127,8 +128,8 @@ private:
 
 }  // namespace
 
-bool edge_can_touch_along(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
-                bool nearly_flat) {
+bool edge_can_touch_along(const SurfaceTables& surface, std::span<const Vec3> position, Index edge,
+                          const Vec3& direction, bool nearly_flat) {
     const Wedge wedge(surface, position, edge, 0, nearly_flat);
     return wedge.convex() && wedge.can_touch_along(direction);
 }

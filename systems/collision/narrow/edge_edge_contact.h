@@ -33,7 +33,7 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
 /// a surface: the surface is convex at the edge, and no face at the edge is nearer to the feature. `direction`: unit
 /// vector from the edge to the feature, perpendicular to the edge. `nearly_flat`: true if nearly flat edges can also
 /// touch the feature.
-bool edge_can_touch_along(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
-                bool nearly_flat);
+bool edge_can_touch_along(const SurfaceTables& surface, std::span<const Vec3> position, Index edge,
+                          const Vec3& direction, bool nearly_flat);
 
 }  // namespace skerry

@@ -112,8 +112,8 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
 }  // namespace
 
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
-                                            const Vec3& point, Index triangle, const PairScale& scale, Real contact_limit,
-                                            Surfaces surfaces) {
+                                            const Vec3& point, Index triangle, const PairScale& scale,
+                                            Real contact_limit, Surfaces surfaces) {
     const auto& corner = surface.triangles.node[triangle];
     PointTriangleContact contact;
     contact.closest = closest_point_on_triangle(point, position[corner[0]], position[corner[1]], position[corner[2]]);
@@ -156,16 +156,17 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     } else {
         const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::vertex0);
         if (surface.triangles.owned_vertices[triangle] >> k & 1)
-            touch_border(q,
-                         vertex_normal(q, surface.triangles.vertex[triangle][k],
-                                       [&](const Vec3& side) { return q.offset.dot(side) <= q.border_tolerance(side); }),
-                         straight_behind, surfaces, contact);
+            touch_border(
+                q,
+                vertex_normal(q, surface.triangles.vertex[triangle][k],
+                              [&](const Vec3& side) { return q.offset.dot(side) <= q.border_tolerance(side); }),
+                straight_behind, surfaces, contact);
     }
     return contact;
 }
 
-bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                       const Vec3& axis, const PairScale& scale) {
+bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                           const Vec3& offset, const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
     // If the axis tilts by the small angle t, the vector from the vertex to the nearest point p of the axis becomes
     // offset + t * along. [low, high]: tilt angles t for which no face at the vertex is nearer to p than the vertex.
@@ -182,10 +183,11 @@ bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> p
     return offset.dot(normal) > 0;
 }
 
-bool vertex_can_touch_point(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                        const PairScale& scale) {
+bool vertex_can_touch_point(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                            const Vec3& offset, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
-    return offset.dot(vertex_normal(q, vertex, [&](const Vec3& side) { return offset.dot(side) <= q.border_tolerance(side); })) > 0;
+    return offset.dot(vertex_normal(
+               q, vertex, [&](const Vec3& side) { return offset.dot(side) <= q.border_tolerance(side); })) > 0;
 }
 
 }  // namespace skerry

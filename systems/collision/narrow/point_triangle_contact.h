@@ -40,18 +40,18 @@ struct PointTriangleContact {
 /// accurate direction, the normal is the mean of the normals of the adjacent faces. The core of a round body can be
 /// touched from all sides.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
-                                            const Vec3& point, Index triangle, const PairScale& scale, Real contact_limit,
-                                            Surfaces surfaces);
+                                            const Vec3& point, Index triangle, const PairScale& scale,
+                                            Real contact_limit, Surfaces surfaces);
 
 /// True if a vertex of a surface can touch a capsule or the curved side of a cylinder. Let p be the point of the axis
 /// that is nearest to the vertex. The result is true if, after some tilt of the axis by at most axis_tilt, no face at
 /// the vertex is nearer to p than the vertex. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
-bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                       const Vec3& axis, const PairScale& scale);
+bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                           const Vec3& offset, const Vec3& axis, const PairScale& scale);
 
 /// True if a vertex of a surface can touch a point, because no face at the vertex is nearer to this point than the
 /// vertex. `offset`: vector from the vertex to the point [m].
-bool vertex_can_touch_point(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                        const PairScale& scale);
+bool vertex_can_touch_point(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                            const Vec3& offset, const PairScale& scale);
 
 }  // namespace skerry

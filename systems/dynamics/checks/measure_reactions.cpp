@@ -24,7 +24,8 @@ bool is_measured_by_node(const ReactionInputs& inputs, Index body) {
 
 /// True for an attachment that holds all three velocity components of its nodes, on an awake body that is not rigid.
 bool holds_measured_nodes(const ReactionInputs& inputs, std::size_t attachment) {
-    return holds_completely(inputs.directions[attachment]) && is_measured_by_node(inputs, inputs.attached_body[attachment]);
+    return holds_completely(inputs.directions[attachment]) &&
+           is_measured_by_node(inputs, inputs.attached_body[attachment]);
 }
 
 /// Adds the reaction on nodes that are held along single directions: the impulses that hold_axes has applied.
@@ -119,7 +120,8 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
         // A body is handled once, at its first attachment. Its other attachments may stand anywhere later in the list.
-        bool done = body == last || !is_measured_by_node(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
+        bool done = body == last || !is_measured_by_node(inputs, body) ||
+                    !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);
         last = body;

@@ -16,7 +16,8 @@ namespace {
 constexpr Real modulus_at_rest = 0.01;
 
 /// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.
-bool in_one_cluster(ConnectedNodes& connected, const BlockNodes& nodes, std::size_t lane, std::span<const Real> inverse_mass) {
+bool in_one_cluster(ConnectedNodes& connected, const BlockNodes& nodes, std::size_t lane,
+                    std::span<const Real> inverse_mass) {
     Index root = no_index;
     for (Index k = 0; k < nodes.count; ++k) {
         const Index node = nodes.node[k][lane];

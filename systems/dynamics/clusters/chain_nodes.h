@@ -38,13 +38,13 @@ void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real>
 /// Sets of moving nodes that the implicit elements of a body connect. Guards (inversion barriers) are left out, since
 /// they act only inside clusters that other elements form.
 struct ConnectedNodes {
-    Index first = 0;                    // smallest row of NodeTable among the connected nodes
-    UnionFind sets;                     // numbered by row of NodeTable minus `first`
+    Index first = 0;                         // smallest row of NodeTable among the connected nodes
+    UnionFind sets;                          // numbered by row of NodeTable minus `first`
     std::vector<std::uint8_t> is_connected;  // 1 for connected nodes; by row of NodeTable minus `first`
 
     /// `modulus`: assumed moduli by block; row 0 belongs to the block blocks.begin.
     ConnectedNodes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
-               std::span<const Real> inverse_mass) {
+                   std::span<const Real> inverse_mass) {
         std::vector<Index> nodes;
         const auto for_each = [&](auto&& visit) {
             for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
@@ -74,7 +74,8 @@ struct ConnectedNodes {
     /// `node`. The root is a row of NodeTable minus `first`.
     Index root_of(Index node) {
         const Index row = node - first;
-        if (row < 0 || row >= static_cast<Index>(is_connected.size()) || is_connected[static_cast<std::size_t>(row)] == 0)
+        if (row < 0 || row >= static_cast<Index>(is_connected.size()) ||
+            is_connected[static_cast<std::size_t>(row)] == 0)
             return no_index;
         return sets.root(row);
     }

@@ -94,7 +94,8 @@ void ImplicitSearch::prepare() {
     marks_.resize(count);  // indexed by row of NodeTable minus first_node_; some rows may be unused
     sum_.resize(count);
     ratio_.resize(count);
-    for (std::vector<ElementLane>* column : {&stiffness_, &weight_per_share_, &step_, &measured_step_, &measured_trace_})
+    for (std::vector<ElementLane>* column :
+         {&stiffness_, &weight_per_share_, &step_, &measured_step_, &measured_trace_})
         column->resize(rows);
     list_incidences();
     bounds_.stiffnesses(elements_, blocks_, position_, stiffness_);
@@ -156,7 +157,8 @@ void ImplicitSearch::measure() {
 void ImplicitSearch::estimate() {
     weight_.resize(weight_per_share_.size());
     for (std::size_t row = 0; row < weight_per_share_.size(); ++row)
-        for (std::size_t l = 0; l < element_lanes; ++l) weight_[row][l] = out_.mass_share[row][l] * weight_per_share_[row][l];
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            weight_[row][l] = out_.mass_share[row][l] * weight_per_share_[row][l];
     std::ranges::fill(sum_, Real(0));
     for (const Incidence& incidence : incidences_)
         sum_[static_cast<std::size_t>(incidence.node)] += lane_value(weight_, incidence.element) * incidence.size;

@@ -23,8 +23,8 @@ struct ImplicitGoal {
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms
     // (ElementBlockTable::mass_form), which are computed later, will allow longer steps.
     Real stable;
-    Real stiffness_ratio;    // ratio of assumed to present stiffness of an implicit element, which may stiffen later
-    Real max_moment;  // largest allowed ImplicitShare::moment; the search fails above it
+    Real stiffness_ratio;  // ratio of assumed to present stiffness of an implicit element, which may stiffen later
+    Real max_moment;       // largest allowed ImplicitShare::moment; the search fails above it
     // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. A limit requires
     // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]), because clusters contain only moving nodes.
     std::size_t max_nodes = 0;
@@ -124,7 +124,7 @@ private:
     std::vector<Incidence> incidences_;
     std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
     std::vector<ElementLane> stiffness_;  // upper bound on the material Hessian in the shape `position_` [Pa]
-    std::vector<ElementLane> weight_per_share_;       // stiffness_weight() of an element divided by its initial mass share
+    std::vector<ElementLane> weight_per_share_;  // stiffness_weight() of an element divided by its initial mass share
     // Values by element: stable step (step_), stable step at the last rigorous bound (measured_step_), trace at that
     // bound (measured_trace_), present trace (present_trace_), stiffness weight (weight_).
     std::vector<ElementLane> step_, measured_step_, measured_trace_, present_trace_, weight_;

@@ -132,8 +132,8 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
     const Real8 one = Real8{} + 1.0, zero{}, assumed = load(out.modulus[b]);
     if (all(assumed <= 0.0)) return 0;
     const LaneMat3<Real8> F = deformation_of(elements, b, bodies.position);
-    if (all((assumed <= 0.0) |
-            (quick_stiffness(elements.material_of(b), inner_product(F, F), determinant(F)) <= near_stiffness * assumed)))
+    if (all((assumed <= 0.0) | (quick_stiffness(elements.material_of(b), inner_product(F, F), determinant(F)) <=
+                                near_stiffness * assumed)))
         return 0;
     LaneQuaternion<Real8> q{one, zero, zero, zero};
     if (less_stiff_than(elements, b, F, assumed, too_near, q)) return 0;

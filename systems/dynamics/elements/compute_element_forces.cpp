@@ -168,7 +168,7 @@ struct Run {
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal assumed = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             any |= !all((assumed <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
-                                                          determinant(F[part])) <= near_stiffness * assumed));
+                                                            determinant(F[part])) <= near_stiffness * assumed));
         }
         return any;
     }

@@ -40,9 +40,9 @@ struct PatchRows {
     }
 };
 
-/// CornerPositions: positions of one corner of all elements in a register-wide part of a block, in the order that the transposes
-/// in edge() need. One full-width load per position and a few shuffles replace three gathers, each of which takes one
-/// load per lane.
+/// CornerPositions: positions of one corner of all elements in a register-wide part of a block, in the order that the
+/// transposes in edge() need. One full-width load per position and a few shuffles replace three gathers, each of which
+/// takes one load per lane.
 #ifdef __AVX512VL__
 // Halves of registers are moved with intrinsics, because for __builtin_shufflevector gcc shuffles the whole register.
 
@@ -98,7 +98,8 @@ template <class Positions>
 
 /// Variant of load_corner for a block that contains the last node. The position of this node ends the array, and
 /// load_position() would read beyond the end.
-[[gnu::noinline]] inline CornerPositions load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
+[[gnu::noinline]] inline CornerPositions load_corner_near_end(const NodeLane& node, std::size_t part,
+                                                              const Vec3* position) {
     const auto at = [&](std::size_t l) {
         const Vec3& p = position[node[4 * part + l]];
         return Real4{p[0], p[1], p[2], 0};

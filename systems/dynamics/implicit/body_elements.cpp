@@ -134,7 +134,8 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         for (std::size_t k = 0; k < nodes.order_index.size(); ++k)
             for (std::size_t l = 0; l <= k; ++l) {
                 const Vec3 &g = turned_[k], &other = turned_[l];
-                Mat3 block = normal.cwiseProduct(g * other.transpose()) + transposed_entry.cwiseProduct(other * g.transpose());
+                Mat3 block =
+                    normal.cwiseProduct(g * other.transpose()) + transposed_entry.cwiseProduct(other * g.transpose());
                 block.diagonal() = same_entry * g.cwiseProduct(other);
                 block = tangent.left * block * tangent.left.transpose();
                 if (tangent.is_anisotropic)

@@ -25,7 +25,8 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
     // is the angular velocity of the frame. The exact rotation is applied, because it adds no energy.
     const Mat3 coriolis_rotation =
         rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
-    for (std::size_t n = 0; n < body.count; ++n) step.velocity_before[body.order_index(n)] = coriolis_rotation * velocity[n];
+    for (std::size_t n = 0; n < body.count; ++n)
+        step.velocity_before[body.order_index(n)] = coriolis_rotation * velocity[n];
     stiff.remove_momenta(step.velocity_before);
     step.velocity = step.velocity_before;
     for (std::size_t n = 0; n < body.count; ++n) {

@@ -156,7 +156,8 @@ void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real ine
     LargeStep& step = stiff.large_step;
     const Mat3 to_mesh = nodes.frame.turn.transpose();
     for (std::size_t n = 0; n < body.count; ++n)
-        step.displacement_in_step[body.order_index(n)] = step.unmoved_displacement[body.order_index(n)] + theta_h * next[n];
+        step.displacement_in_step[body.order_index(n)] =
+            step.unmoved_displacement[body.order_index(n)] + theta_h * next[n];
     stiff.elements().forces(step.displacement_in_step, force);
     Vec3 missing = Vec3::Zero();
     Real held = 0;

@@ -10,9 +10,9 @@ namespace skerry {
 namespace {
 
 /// Function of the node velocities v whose minimum is the solution of the step: inertia v.M v / 2 - v.impulse +
-/// U(unmoved_displacement + theta_h v). M are the node masses; `impulse` and `unmoved_displacement` are members of LargeStep. U is the elastic
-/// energy. For a free body U also contains the energy of the spin, L.I^-1 L / 2, with the constant angular momentum L
-/// and the inertia I of the deformed shape.
+/// U(unmoved_displacement + theta_h v). M are the node masses; `impulse` and `unmoved_displacement` are members of
+/// LargeStep. U is the elastic energy. For a free body U also contains the energy of the spin, L.I^-1 L / 2, with the
+/// constant angular momentum L and the inertia I of the deformed shape.
 class Objective {
 public:
     Objective(Real inertia, Real theta_h, const StiffBody& stiff, LargeStep& step)
@@ -34,8 +34,9 @@ public:
         return sum + stiff_.elements().energy(step_.displacement_in_step) + spin_energy();
     }
 
-    /// Computes the forces at the displacements step_.displacement_in_step, the gradient g of the function, and the next Newton
-    /// direction with the present factor of the matrix A. Returns the squared Newton decrement g.A^-1 g [J].
+    /// Computes the forces at the displacements step_.displacement_in_step, the gradient g of the function, and the
+    /// next Newton direction with the present factor of the matrix A. Returns the squared Newton decrement g.A^-1 g
+    /// [J].
     Real evaluate() {
         stiff_.elements().forces(step_.displacement_in_step, step_.force);
         if (spins_) {

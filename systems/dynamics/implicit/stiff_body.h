@@ -37,21 +37,23 @@ struct LargeStep {
     std::vector<Vec3> unmoved_displacement;
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
-    std::vector<Vec3> force;     // gradient dU/du of U (elastic energy plus energy of the spin) at `displacement_in_step` [N]
+    std::vector<Vec3>
+        force;  // gradient dU/du of U (elastic energy plus energy of the spin) at `displacement_in_step` [N]
     // velocities at the start of the step without rigid motion, rotated by Coriolis forces [m/s]
     std::vector<Vec3> velocity_before;
     // Newton's method: gradient [N s], search direction [m/s], and the displacements at which forces are computed [m].
     std::vector<Vec3> gradient, direction, displacement_in_step;
     // Angular momentum of a free body in the frame of its mesh; zero for a held body [kg m^2/s].
     Vec3 angular_momentum = Vec3::Zero();
-    // Shape with the displacements `displacement_in_step`, set only if angular_momentum is not zero. Between steps it is work memory.
+    // Shape with the displacements `displacement_in_step`, set only if angular_momentum is not zero. Between steps it
+    // is work memory.
     BodyShape shape;
     NewtonCounts counts;
     bool failed = false;  // true if Newton's method found no velocity
 
     void resize(std::size_t count) {
-        for (std::vector<Vec3>* column :
-             {&unmoved_displacement, &impulse, &velocity, &force, &velocity_before, &gradient, &direction, &displacement_in_step})
+        for (std::vector<Vec3>* column : {&unmoved_displacement, &impulse, &velocity, &force, &velocity_before,
+                                          &gradient, &direction, &displacement_in_step})
             column->resize(count);
         angular_momentum.setZero();
     }

@@ -75,7 +75,7 @@ struct MimicAxis {
 
     MimicAxis(const JointInputs& joints, std::size_t j, bool leads, Real coefficient) {
         const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
-                         second = joints.place(joints.second[j], joints.second_frame[j]);
+                        second = joints.place(joints.second[j], joints.second_frame[j]);
         coordinate = joint_coordinate(joints.kind[j], first, second, joints.coordinate[j]);
         block = {.joint = static_cast<Index>(j),
                  .turning = joints.kind[j] == JointKind::hinge,
@@ -147,7 +147,7 @@ bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointB
         if (blocks.resting[j]) continue;
         const JointKind kind = joints.kind[j];
         const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
-                         second = joints.place(joints.second[j], joints.second_frame[j]);
+                        second = joints.place(joints.second[j], joints.second_frame[j]);
         blocks.coordinate[j] = joint_coordinate(kind, first, second, joints.coordinate[j]);
         JointBlock block{.joint = static_cast<Index>(j),
                          .turning = false,

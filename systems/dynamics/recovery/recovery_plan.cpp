@@ -260,7 +260,8 @@ private:
     const RecoveryMesh& body_;
     std::vector<Vec3> rest_;  // m
     NodePatches patches_;
-    // by node: its row of RecoveryPlan::face_of_smooth_node, or no_index if this row is not needed; 0 until add_smooth sets the row
+    // by node: its row of RecoveryPlan::face_of_smooth_node, or no_index if this row is not needed; 0 until add_smooth
+    // sets the row
     std::vector<Index> smooth_;
     std::vector<std::uint8_t> needed_;  // by tetrahedron: 1 if the elements that cover it are needed
     ElementsNear near_elements_;

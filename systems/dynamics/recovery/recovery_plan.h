@@ -42,10 +42,10 @@ struct RecoveryPlan {
     // `faces`. It is no_index for inner nodes, and for nodes of materials that yield. The value at such a node is a
     // weighted sum of values of the elements around it.
     std::vector<Index> face_of_smooth_node;
-    // For each row of `face_of_smooth_node`: factors of the elements around its node, by place, ascending. For a node without a row
-    // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
-    // Newton's method and replaces its result if the method fails. `strained`: elements with strain. `volumetric`:
-    // elements that have only the volumetric part of the stress.
+    // For each row of `face_of_smooth_node`: factors of the elements around its node, by place, ascending. For a node
+    // without a row of `faces` they are the factors of a fit. For a node with such a row they are the factors of a
+    // mean, which starts Newton's method and replaces its result if the method fails. `strained`: elements with strain.
+    // `volumetric`: elements that have only the volumetric part of the stress.
     Ragged<Term> strained, volumetric;
 
     struct Face {
@@ -69,11 +69,11 @@ struct RecoveryPlan {
     std::vector<Corner> corners;  // ascending by place
     std::size_t force_count = 0;  // number of nodes whose force is needed
 
-    // For each of `nodes`: its row of `face_of_smooth_node`, or no_index for a node at an edge, corner or interface of materials.
-    // The value of such a node is extrapolated.
+    // For each of `nodes`: its row of `face_of_smooth_node`, or no_index for a node at an edge, corner or interface of
+    // materials. The value of such a node is extrapolated.
     std::vector<Index> smooth_of;
-    // Terms of the sums that give the extrapolated values. In `donors`, Term::from is a row of `face_of_smooth_node`. In the other
-    // two columns it is a place; they are used only for materials with too few donors for a fit.
+    // Terms of the sums that give the extrapolated values. In `donors`, Term::from is a row of `face_of_smooth_node`.
+    // In the other two columns it is a place; they are used only for materials with too few donors for a fit.
     Ragged<Term> donors, strained_around, volumetric_around;
 };
 

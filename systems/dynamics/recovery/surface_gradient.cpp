@@ -53,8 +53,8 @@ Real modulus_of(const MaterialConstants& material) {
     return 2 * material.shear_modulus + std::abs(material.lame_lambda);
 }
 
-/// Derivative d(P N)/db for F = base + b normal_row^T, with the stress P and the normal N (SurfaceAround in the header).
-/// The function add_stiffness of a material law adds its terms through the member functions.
+/// Derivative d(P N)/db for F = base + b normal_row^T, with the stress P and the normal N (SurfaceAround in the
+/// header). The function add_stiffness of a material law adds its terms through the member functions.
 struct SlopeTerms {
     LaneVec3<Real8> normal_row, normal;
     LaneMat3<Real8> sum{};
@@ -191,7 +191,7 @@ Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const
                    &x1 = position[static_cast<std::size_t>(triangle.node[1])],
                    &x2 = position[static_cast<std::size_t>(triangle.node[2])];
         area_gradient += triangle.weight *
-                   ((x1 - x0) * triangle.along_first.transpose() + (x2 - x0) * triangle.along_second.transpose());
+                         ((x1 - x0) * triangle.along_first.transpose() + (x2 - x0) * triangle.along_second.transpose());
     }
     return area_gradient;
 }
@@ -231,8 +231,8 @@ std::vector<std::optional<Mat3>> surface_gradients(std::span<const SurfaceSearch
         if (material.model == MaterialModel::linear) search_lanes(Linear{}, nodes, results);
         for (std::size_t i = 0; i < nodes.size(); ++i)
             if (!results[i])
-                results[i] = surface_gradient(nodes[i].material, *nodes[i].around, nodes[i].area_gradient, nodes[i].traction,
-                                              nodes[i].start);
+                results[i] = surface_gradient(nodes[i].material, *nodes[i].around, nodes[i].area_gradient,
+                                              nodes[i].traction, nodes[i].start);
     }
     return found;
 }

@@ -67,7 +67,8 @@ public:
         constexpr int most_products = 40;
         SplitMix noise(1);
         const Factors factors = factors_of_elements();
-        std::vector<Real4> before(inverse_root_mass_.size(), Real4{}), vector(inverse_root_mass_.size(), Real4{}), product(inverse_root_mass_.size());
+        std::vector<Real4> before(inverse_root_mass_.size(), Real4{}), vector(inverse_root_mass_.size(), Real4{}),
+            product(inverse_root_mass_.size());
         Real size = 0;
         for (std::size_t n = 0; n < vector.size(); ++n) {
             for (int i = 0; i < 3; ++i) vector[n][i] = inverse_root_mass_[n] > 0 ? noise.symmetric() : 0;

@@ -79,7 +79,8 @@ Real BodyEquations::set_right(std::span<const Real> x) {
 
 void BodyEquations::add_right(Index contact, const Vec3& impulse) {
     for (const UnknownEffect& effect : effects_[static_cast<std::size_t>(contact)].all()) {
-        Real* const at = factor_.right().data() + factor_.first(effect.part) + static_cast<std::size_t>(effect.first_entry);
+        Real* const at =
+            factor_.right().data() + factor_.first(effect.part) + static_cast<std::size_t>(effect.first_entry);
         const Vec3 moment = effect.arm.cross(impulse);
         for (Index k = 0; k < 3; ++k) at[k] += effect.weight * impulse[k];
         if (effect.turns)

@@ -29,8 +29,8 @@ void subtract(Real value, Real* from) {
 }
 
 /// Operations that write one register of a product to a column of c. `subtract_from` subtracts the register.
-/// SubtractLastRows subtracts only its last `count` rows, because the rows above are already done. `store` overwrites the
-/// column.
+/// SubtractLastRows subtracts only its last `count` rows, because the rows above are already done. `store` overwrites
+/// the column.
 constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
 struct SubtractLastRows {
     Index count;

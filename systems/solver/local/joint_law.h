@@ -12,7 +12,7 @@ namespace skerry {
 /// Limits, motor and passive forces of an axis in this step.
 struct AxisBounds {
     Real low = -infinity, high = infinity;  // velocity limits [m/s or rad/s]
-    Real target = 0, max_impulse = 0;              // velocity [m/s or rad/s] and greatest impulse [N s or N m s] of the motor
+    Real target = 0, max_impulse = 0;       // velocity [m/s or rad/s] and greatest impulse [N s or N m s] of the motor
     Real friction = 0;                      // greatest impulse of dry friction [N s or N m s]
     // Impulse of spring and damper at the axis velocity u: pull - drag u [N s or N m s].
     Real pull = 0;
@@ -22,13 +22,16 @@ struct AxisBounds {
 /// Returns the impulse of motor and dry friction together, where u = w r + b is the axis velocity and w the mobility.
 /// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
-    // Motor and friction are two drives; the target velocity of friction is 0. `lower_drive`, `upper_drive`: greatest impulses of
-    // the drive with the lower and of the drive with the higher target. Below the lower target both drives push
-    // forwards with full strength. Between the targets the first drive brakes and the second still pushes, both with
-    // full strength. So at the lower target the sum of their impulses is in [upper_drive - lower_drive, upper_drive + lower_drive].
+    // Motor and friction are two drives; the target velocity of friction is 0. `lower_drive`, `upper_drive`: greatest
+    // impulses of the drive with the lower and of the drive with the higher target. Below the lower target both drives
+    // push forwards with full strength. Between the targets the first drive brakes and the second still pushes, both
+    // with full strength. So at the lower target the sum of their impulses is in [upper_drive - lower_drive,
+    // upper_drive + lower_drive].
     const bool motor_is_lower = axis.target < 0;
-    const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction, upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
-    const Real near_lower_target = std::clamp((std::min(axis.target, Real(0)) - b) / w, upper_drive - lower_drive, upper_drive + lower_drive);
+    const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
+               upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
+    const Real near_lower_target =
+        std::clamp((std::min(axis.target, Real(0)) - b) / w, upper_drive - lower_drive, upper_drive + lower_drive);
     if (near_lower_target > upper_drive - lower_drive) return near_lower_target;
     return std::clamp((std::max(axis.target, Real(0)) - b) / w, -upper_drive - lower_drive, upper_drive - lower_drive);
 }
@@ -58,10 +61,11 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     }
     if (!(axis.max_impulse > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
-    // `lower_drive`, `upper_drive`: as in drive_impulse. Up to the lower target the second drive has its full strength, and the
-    // first one gives the rest. Above that target the first drive brakes with full strength.
+    // `lower_drive`, `upper_drive`: as in drive_impulse. Up to the lower target the second drive has its full strength,
+    // and the first one gives the rest. Above that target the first drive brakes with full strength.
     const bool motor_is_lower = axis.target < 0;
-    const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction, upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
+    const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
+               upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
     const Real lower_impulse = drive >= upper_drive - lower_drive ? drive - upper_drive : -lower_drive;
     const Real motor = motor_is_lower ? lower_impulse : drive - lower_impulse;
     return {motor, spring + (drive - motor)};

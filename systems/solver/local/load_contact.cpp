@@ -31,7 +31,8 @@ inline KickVelocities kick_velocities(const RegionInputs& inputs, Index row, std
     if (inputs.implicit.any())
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0)
-                velocity.now -= stencil.weight[a] * inputs.implicit.deformation_kick(stencil.node[a], inputs.rigid.nodes);
+                velocity.now -=
+                    stencil.weight[a] * inputs.implicit.deformation_kick(stencil.node[a], inputs.rigid.nodes);
     return velocity;
 }
 
@@ -50,7 +51,8 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     // press on a node in every step. If such contacts rebounded, the node would bounce forever.
     const Real kick_speed = std::abs(coming.dot(inputs.normal[row]) - approach);
     constexpr Real clearly = 2;  // least ratio of the approach speed of an impact to the velocity change by forces
-    const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * kick_speed});
+    const Real slowest_impact =
+        std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * kick_speed});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;
 }

@@ -7,8 +7,8 @@
 
 #include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/repair/part_fans.h"
-#include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/remove_flat_triangles.h"
+#include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/triangle_tree.h"
 #include "skerry/error.h"
 #include "skerry/world.h"
@@ -152,13 +152,15 @@ TEST_CASE("flat triangles of a ball go within the tolerance, and no further", "[
     Real last = before;
     for (const Real tolerance : {1e-9, 2e-3, 2e-2}) {
         INFO(tolerance);
-        const mesh::RepairedSurface repaired = mesh::remove_flat_triangles(ball, {.tolerance = tolerance, .altitude = 0.05});
+        const mesh::RepairedSurface repaired =
+            mesh::remove_flat_triangles(ball, {.tolerance = tolerance, .altitude = 0.05});
         CHECK(is_closed(repaired.surface));
         CHECK(mesh::surface_distance(ball, repaired.surface).greatest() <= tolerance);
         const Real after = smallest_altitude_of(repaired.surface);
         CHECK(after >= last);
         last = after;
-        const mesh::RepairedSurface again = mesh::remove_flat_triangles(ball, {.tolerance = tolerance, .altitude = 0.05});
+        const mesh::RepairedSurface again =
+            mesh::remove_flat_triangles(ball, {.tolerance = tolerance, .altitude = 0.05});
         CHECK(again.surface.nodes == repaired.surface.nodes);
         CHECK(again.surface.triangles == repaired.surface.triangles);
     }

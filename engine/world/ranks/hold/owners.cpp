@@ -126,7 +126,7 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
 }
 
 std::vector<std::vector<int>> find_holding_ranks(const WholeWorld& whole, std::span<const std::int32_t> owner,
-                                           std::span<const BodyExtent> extents, int rank_count) {
+                                                 std::span<const BodyExtent> extents, int rank_count) {
     const auto owner_of = [&](Index world_row) { return owner[static_cast<std::size_t>(world_row)]; };
     std::vector<std::vector<int>> holders_of_unit(whole.size());
     const auto hold = [&](Index world_row, Index other) {

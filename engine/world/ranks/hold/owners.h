@@ -33,6 +33,6 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
 /// a body of the unit. If a body of the unit has `on_all`, all ranks hold the unit. `owner`: by row of the undivided
 /// world.
 std::vector<std::vector<int>> find_holding_ranks(const WholeWorld& whole, std::span<const std::int32_t> owner,
-                                           std::span<const BodyExtent> extents, int rank_count);
+                                                 std::span<const BodyExtent> extents, int rank_count);
 
 }  // namespace skerry

@@ -133,7 +133,9 @@ public:
     }
 
 private:
-    bool is_solved_here(Index body) const { return regions_.solved_elsewhere.empty() || !regions_.solved_elsewhere[body]; }
+    bool is_solved_here(Index body) const {
+        return regions_.solved_elsewhere.empty() || !regions_.solved_elsewhere[body];
+    }
 
     /// Sets the impulses of hold rows (contact rows that hold nodes along single directions) to zero if they are in no
     /// region of this rank. Another rank solves them. Here they still contain the initial impulses of a solver.

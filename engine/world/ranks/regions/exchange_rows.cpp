@@ -85,8 +85,8 @@ private:
                 visit(static_cast<Index>(b), solver_of(bodies_.nodes[b].begin));
     }
 
-    /// Copies RankRegions::solved_elsewhere (1: another rank solves the joints, ties and cables) of the first body of each
-    /// unit to the other bodies of the unit.
+    /// Copies RankRegions::solved_elsewhere (1: another rank solves the joints, ties and cables) of the first body of
+    /// each unit to the other bodies of the unit.
     void spread_over_units() {
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
             regions_.solved_elsewhere[b] = regions_.unit[b] != no_index && regions_.solved_elsewhere[regions_.unit[b]];
