@@ -88,14 +88,14 @@ public:
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
-            // Lever arm from the core of a round body (its centre or axis) to the contact point. beside_core() returns
+            // Lever arm from the core of a round body (its centre or axis) to the contact point. core_arm() returns
             // the arm times the sum of the weights of all nodes of the body. So it is added only once, with the first
             // of these nodes.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& term) { return term.frame == frame; });
             const Vec3 beside = frame != no_index && is_first && weight != 0
-                                    ? inputs_.rigid.nodes.beside_core(node, weight, c, inputs_.normal[c], inputs_.touch)
+                                    ? inputs_.rigid.nodes.core_arm(node, weight, c, inputs_.normal[c], inputs_.touch)
                                     : Vec3(Vec3::Zero());
             add_node(row, node, weight, along, nullptr, beside);
         }

@@ -19,9 +19,8 @@ namespace {
 
 // Amounts of work; the unit is the test of one candidate of two surfaces. candidates_per_block: work of one block. A
 // block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all must be tested.
-// work_of_pair: work per pair, independent of its candidates. work_of_collider_candidate: work
-// per candidate of a body and a collider; it is more than 1, because only candidates of two surfaces are tested in
-// groups of eight.
+// work_of_pair: work per pair, independent of its candidates. work_of_collider_candidate: work per candidate of a body
+// and a collider; it is more than 1, because only candidates of two surfaces are tested in groups of eight.
 constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index work_of_pair = 16;
 constexpr Index work_of_collider_candidate = 5;

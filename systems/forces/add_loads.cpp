@@ -14,8 +14,8 @@ constexpr std::size_t loaded_nodes_per_block = 4096;
 
 /// Mean scales of a load in this step.
 struct MeanScales {
-    Real explicit_scale,
-        implicit_scale;  // `explicit_scale`: for explicit and rigid bodies; `implicit_scale`: for implicit bodies
+    Real explicit_scale;  // for explicit and rigid bodies
+    Real implicit_scale;  // for implicit bodies
 
     MeanScales(const LoadInputs& loads, std::size_t load) {
         const std::span<const TimeKey> keys = rows_of(loads.key, loads.scale_keys[load]);

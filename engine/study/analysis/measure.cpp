@@ -12,8 +12,8 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real least_share_of_bar =
-    0.2;  // fraction of the error bar; irregular parts of the error below it are ignored
+// Fraction of the error bar. Irregular parts of the error below it are ignored.
+constexpr Real least_share_of_bar = 0.2;
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {

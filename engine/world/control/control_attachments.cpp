@@ -53,7 +53,8 @@ void require_axes(const Model& model, std::size_t body, std::span<const Index> n
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
         if (table.body[a] != static_cast<Index>(body) || holds_completely(table.held[a])) continue;
         const Mat3 cosines = (table.held[a].transpose() * held).cwiseAbs();
-        if (((cosines.array() <= perpendicular_tolerance) || (cosines.array() >= 1 - least_oblique)).all()) continue;
+        if (((cosines.array() <= perpendicular_tolerance) || (cosines.array() >= 1 - perpendicular_tolerance)).all())
+            continue;
         for (const Index row : rows_of(table.node, table.nodes[a]))
             if (const Index n = row - model.bodies.nodes[body].begin; std::ranges::find(nodes, n) != nodes.end())
                 refuse("attach", "directions",

@@ -283,9 +283,9 @@ private:
     UnionFind sets_;                   // sets of bodies that joints, ties and the like connect
     std::vector<Vec3> before_;         // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;  // by body
-    std::vector<Real> kinetic_before_,
-        kinetic_now_{};  // kinetic energies before and after this step, by root of a set [J]
-    Real largest_ = 0;   // largest out-of-balance force of a body so far [N]
+    // kinetic energies before and after this step, by root of a set [J]
+    std::vector<Real> kinetic_before_, kinetic_now_{};
+    Real largest_ = 0;  // largest out-of-balance force of a body so far [N]
 };
 
 /// Stops everything that is prescribed as a function of time, and wakes all bodies.

@@ -88,8 +88,8 @@ private:
     /// from the face at rest. Neither end may lie in the plane of the face up to rounding errors, because edges in a
     /// flat side of the body do so without a crossing.
     bool counts_in_self(Index p, Index q, const std::array<Index, 3>& face) const {
-        constexpr Real rounding =
-            1e-9;  // least height of an end above the plane, as a fraction of least_rest_distance_
+        // least height of an end above the plane, as a fraction of least_rest_distance_
+        constexpr Real rounding = 1e-9;
         const auto& x = inputs_.position;
         const Vec3 &a = x[face[0]], normal = (x[face[1]] - a).cross(x[face[2]] - a);
         const Real least = rounding * least_rest_distance_ * normal.norm();

@@ -61,8 +61,8 @@ struct InversionPart {
     Real uninverted_until = 0;  // travel of the body up to which no tetrahedron of these blocks can invert [m]
     // `count`: number of tetrahedra that the step inverts. `tetrahedron`: the first of them.
     Index count = 0, tetrahedron = no_index;
-    bool is_harmful =
-        false;  // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
+    // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
+    bool is_harmful = false;
 };
 
 /// Working memory of find_inversions, reused in later steps.

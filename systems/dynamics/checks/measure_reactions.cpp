@@ -68,10 +68,10 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
 
 /// Adds the impulses on held nodes that come from the added inertia of the implicit elements (docs/methods/clusters.md
 /// 1). Through this inertia a velocity change dv_k of a moving node k requires the additional impulse beta c V
-/// (g_k.g_n) dv_k on each held node n of the element. The element has the factor beta (inertia_of_stiffness()), the
+/// (g_k.g_n) dv_k on each held node n of the element. The element has the factor beta (inertia_factor()), the
 /// assumed modulus c, the volume V and the shape gradients g. Velocity changes by damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
-    const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
+    const Real beta = inertia_factor(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);
     for (auto b = static_cast<std::size_t>(inputs.blocks[body].begin);
          b < static_cast<std::size_t>(inputs.blocks[body].end); ++b)

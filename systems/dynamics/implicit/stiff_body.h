@@ -37,8 +37,8 @@ struct LargeStep {
     std::vector<Vec3> unmoved_displacement;
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
-    std::vector<Vec3>
-        force;  // gradient dU/du of U (elastic energy plus energy of the spin) at `displacement_in_step` [N]
+    // gradient dU/du of U (elastic energy plus energy of the spin) at `displacement_in_step` [N]
+    std::vector<Vec3> force;
     // velocities at the start of the step without rigid motion, rotated by Coriolis forces [m/s]
     std::vector<Vec3> velocity_before;
     // Newton's method: gradient [N s], search direction [m/s], and the displacements at which forces are computed [m].

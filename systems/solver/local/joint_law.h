@@ -24,7 +24,7 @@ struct AxisBounds {
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
     // Motor and friction are two drives; the target velocity of friction is 0. `lower_drive`, `upper_drive`: greatest
     // impulses of the drive with the lower and of the drive with the higher target. Below the lower target both drives
-    // push forwards with full strength. Between the targets the first drive brakes and the second still pushes, both
+    // push forwards with full strength. Between the targets the lower drive brakes and the upper still pushes, both
     // with full strength. So at the lower target the sum of their impulses is in [upper_drive - lower_drive,
     // upper_drive + lower_drive].
     const bool motor_is_lower = axis.target < 0;
@@ -61,8 +61,8 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     }
     if (!(axis.max_impulse > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
-    // `lower_drive`, `upper_drive`: as in drive_impulse. Up to the lower target the second drive has its full strength,
-    // and the first one gives the rest. Above that target the first drive brakes with full strength.
+    // `lower_drive`, `upper_drive`: as in drive_impulse. Up to the lower target the upper drive has its full strength,
+    // and the lower one gives the rest. Above that target the lower drive brakes with full strength.
     const bool motor_is_lower = axis.target < 0;
     const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
                upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
