@@ -71,6 +71,6 @@ struct TieTimes {
 /// Stores the impulses and the largest forces of an accepted step. A node breaks off if its force exceeds the limit of
 /// its tie; a tie of the kind `ball` breaks as a whole. Returns the number of ties that have lost their last node in
 /// this step.
-Index store_ties(const TieRowTable& rows, const BallTies& means, const TieTimes& times, TieTable& ties);
+Index store_ties(const TieRowTable& rows, const BallTies& ball_ties, const TieTimes& times, TieTable& ties);
 
 }  // namespace skerry

@@ -15,8 +15,8 @@ struct Guard {
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 36;
 
-    static constexpr Real barrier_ratio =
-        0.5;  // J0: ratio of present volume to rest volume below which the barrier acts
+    /// J0: ratio of present volume to rest volume below which the barrier acts.
+    static constexpr Real barrier_ratio = 0.5;
 
     /// Elastic energy per rest volume: k/2 (J0 - J)^2 if J = det F is below J0, else zero [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);

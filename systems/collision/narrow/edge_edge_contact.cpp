@@ -118,8 +118,7 @@ private:
     }
 
     std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
-    // for each face: upper limit of the scalar product of `into_` and a direction for which can_touch_along() is true
-    // [m]
+    // for each face: upper limit of the scalar product of `into_` and a direction with can_touch_along() true [m]
     std::array<Real, 2> border_;
     Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;
