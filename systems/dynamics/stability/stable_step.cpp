@@ -157,7 +157,7 @@ void run_pieces(const Pieces& pieces, Range blocks, std::uint64_t until, StepEva
     std::optional<Mat3> rotation;  // rotation of the body; computed once for all waves of this call
     while (check.piece < until) {
         const PieceRun run = run_from(blocks, at_rest > 0, check.piece, until);
-        if (run.opens_wave) check.greatest_before = greatest_of(check, run).bound;
+        if (run.opens_wave) check.known = greatest_of(check, run).bound;
         if (run.work == PieceWork::sum) {
             pieces.sum(run, check);
         } else if (run.work == PieceWork::bound_in_frame || !(check.in_frame > 0) ||
@@ -169,9 +169,9 @@ void run_pieces(const Pieces& pieces, Range blocks, std::uint64_t until, StepEva
                     record_bound(b, bound, greatest_of(found, run), found);
                 };
                 if (run.work == PieceWork::bound_in_frame)
-                    pieces.bound_in_frame(chunk, *rotation, check.greatest_before, record);
+                    pieces.bound_in_frame(chunk, *rotation, check.known, record);
                 else
-                    pieces.bound(chunk, check.greatest_before, record);
+                    pieces.bound(chunk, check.known, record);
             });
         }
         check.piece = run.end;
