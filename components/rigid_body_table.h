@@ -62,8 +62,8 @@ struct RigidBodyTable {
 
     std::size_t size() const { return mass.size(); }
 
-    /// Visits all columns. This is the only list of the columns. find_holders derives holder, held_position and
-    /// held_rotation. `large` is hashed only if it is 1.
+    /// Visits all columns. This is the only list of the columns. find_holding_attachments derives holder, held_position
+    /// and held_rotation. `large` is hashed only if it is 1.
     void for_each_column(auto&& visit) {
         visit("body", body, ColumnRole::link);
         visit("mass", mass, ColumnRole::state);

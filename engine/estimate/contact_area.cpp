@@ -49,7 +49,7 @@ Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_
 struct Patch {
     Real force = 0;                // [N]
     Real curvature = 0, edge = 0;  // [N/m, N m]
-    Real sharpest = 0;             // largest tilt_at() of a contact [rad]
+    Real sharpest = 0;             // largest normal_deviation_at() of a contact [rad]
 };
 
 }  // namespace
@@ -79,13 +79,13 @@ const ContactArea::Surface& ContactArea::surface_of(const World& world, BodyHand
                 surface.edge[n] += edge.norm();
                 ++edges[n];
             }
-    surface.tilt.assign(rest.size(), 0);
+    surface.normal_deviation.assign(rest.size(), 0);
     for (const auto& [a, b, c] : world.surface(body)) {
         const Vec3 of_face = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
         for (const Index node : {a, b, c}) {
             const auto n = static_cast<std::size_t>(node);
             const Real cosine = std::clamp(of_face.dot(normal[n].normalized()), Real{-1}, Real{1});
-            surface.tilt[n] = std::max(surface.tilt[n], std::acos(cosine));
+            surface.normal_deviation[n] = std::max(surface.normal_deviation[n], std::acos(cosine));
         }
     }
     for (std::size_t n = 0; n < rest.size(); ++n) {
@@ -111,12 +111,12 @@ Real ContactArea::curvature_at(const World& world, const Contact& contact, bool 
     return mean_of_nodes(contact, first, surface.curvature);
 }
 
-/// Surface::tilt interpolated at a contact point; 0 for colliders and round bodies [rad].
-Real ContactArea::tilt_at(const World& world, const Contact& contact, bool first) {
+/// Surface::normal_deviation interpolated at a contact point; 0 for colliders and round bodies [rad].
+Real ContactArea::normal_deviation_at(const World& world, const Contact& contact, bool first) {
     const Model& model = WorldAccess::state_of(world).model;
     const BodyHandle body = first ? contact.first : contact.second;
     if (!world.alive(body) || model.round_shape(static_cast<std::size_t>(model.row(body, "sample")))) return 0;
-    return mean_of_nodes(contact, first, surface_of(world, body).tilt);
+    return mean_of_nodes(contact, first, surface_of(world, body).normal_deviation);
 }
 
 void ContactArea::sample(const World& world) {
@@ -125,7 +125,8 @@ void ContactArea::sample(const World& world) {
         const Real force = contact.force().norm();
         if (contact.region < 0 || !(force > 0)) continue;
         const Real curvature = curvature_at(world, contact, true) + curvature_at(world, contact, false);
-        const Real tilt = std::max(tilt_at(world, contact, true), tilt_at(world, contact, false));
+        const Real deviation =
+            std::max(normal_deviation_at(world, contact, true), normal_deviation_at(world, contact, false));
         for (const bool first : {true, false}) {
             const BodyHandle body = first ? contact.first : contact.second;
             if (!world.alive(body) || world.dynamics(body) == BodyDynamics::rigid) continue;
@@ -134,7 +135,7 @@ void ContactArea::sample(const World& world) {
             patch.curvature += force * curvature;
             const Real edge = mean_of_nodes(contact, first, surface_of(world, body).edge);
             patch.edge += force * edge;
-            patch.sharpest = std::max(patch.sharpest, tilt);
+            patch.sharpest = std::max(patch.sharpest, deviation);
         }
     }
     for (const auto& [objects, patch] : patches) {

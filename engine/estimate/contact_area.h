@@ -21,9 +21,9 @@ public:
 private:
     /// Surface of a body at rest. All values of inner nodes are 0.
     struct Surface {
-        std::vector<Real> curvature;  // mean curvature by node, positive if convex [1/m]
-        std::vector<Real> edge;       // mean length of the edges at a node [m]
-        std::vector<Real> tilt;       // largest angle between the normal of a node and those of its faces [rad]
+        std::vector<Real> curvature;         // mean curvature by node, positive if convex [1/m]
+        std::vector<Real> edge;              // mean length of the edges at a node [m]
+        std::vector<Real> normal_deviation;  // largest angle between the normal of a node and those of its faces [rad]
     };
     struct Area {
         Real force = 0;   // largest force in the samples between the body and one other object [N]
@@ -33,7 +33,7 @@ private:
 
     const Surface& surface_of(const World& world, BodyHandle body);
     Real curvature_at(const World& world, const Contact& contact, bool first);
-    Real tilt_at(const World& world, const Contact& contact, bool first);
+    Real normal_deviation_at(const World& world, const Contact& contact, bool first);
 
     std::map<BodyHandle, Surface> surfaces_;
     std::map<BodyHandle, Area> areas_;

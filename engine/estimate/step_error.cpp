@@ -167,18 +167,18 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
                   .start_velocity = world.velocity(body),
                   .velocity = world.velocity(body).velocity,
                   .holder = holder,
-                  .mesh = {Vec3::Zero(), Mat3::Identity()},
+                  .rest_mesh_pose = {Vec3::Zero(), Mat3::Identity()},
                   .dissipated = dissipated_by(world),
-                  .still = least_motion * world.mean_edge(body)};
+                  .rest_displacement = least_motion * world.mean_edge(body)};
     if (holder) {
         const RigidPose& added = model_of(world).body_records[row_of(world, body)].start;
         const Mat3 to_frame = frame.pose.rotation.transpose();
-        motion.mesh = {to_frame * (added.position - frame.pose.position), to_frame * added.rotation};
+        motion.rest_mesh_pose = {to_frame * (added.position - frame.pose.position), to_frame * added.rotation};
     }
     if (world.dynamics(body) == BodyDynamics::rigid)
         motion.start_spin = spin_momentum(world, body);
     else
-        motion.deformation = deformation_of(world, body, frame, motion.mesh);
+        motion.deformation = deformation_of(world, body, frame, motion.rest_mesh_pose);
     return motion;
 }
 
@@ -205,26 +205,26 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
-    const Real error = start_error + motion.deflected + motion.tumbled;
+    const Real error = start_error + motion.rebound_error + motion.tumbled;
     const Vec3 velocity_change = now.velocity - motion.velocity;
     if (interval.collided.contains(body))
-        motion.deflection_rate += velocity_change.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+        motion.rebound_error_rate += velocity_change.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
     // Restitution reverses the velocity at the end of a step instead of at the time of impact, on average half a step
     // late. Each rebound adds a position error: this delay times the change of the velocity, without the change by
     // gravity.
     if (interval.rebounds) {
         const Real rebound = (velocity_change - interval.seconds * world.settings().gravity).norm();
-        motion.deflected += std::min(velocity_change.norm(), rebound) * interval.step / 2;
+        motion.rebound_error += std::min(velocity_change.norm(), rebound) * interval.step / 2;
     }
     motion.velocity = now.velocity;
-    motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
-    motion.deflected += interval.seconds * motion.deflection_rate;
+    motion.rebound_error_rate = std::min(motion.rebound_error_rate, now.velocity.norm());
+    motion.rebound_error += interval.seconds * motion.rebound_error_rate;
     return error;
 }
 
 Real StepError::deformation_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
                                   Motion& motion) {
-    Deformation now = deformation_of(world, body, frame, motion.mesh);
+    Deformation now = deformation_of(world, body, frame, motion.rest_mesh_pose);
     std::swap(now, motion.deformation);
     const Deformation &before = now, &after = motion.deformation;
     const Real size = size_of(world, body, after.displacement), speed = size_of(world, body, after.velocity);
@@ -236,9 +236,9 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     const Settings& settings = world.settings();
     const bool implicit = world.dynamics(body) == BodyDynamics::implicit_elastic;
     const Real step = implicit && !motion.holder ? std::max(interval.step, settings.implicit_step) : interval.step;
-    motion.lead += interval.seconds * frequency_error(frequency * step, implicit, settings.theta);
+    motion.phase_time_error += interval.seconds * frequency_error(frequency * step, implicit, settings.theta);
     if (!implicit) {
-        return (motion.lead + start_shift(world, motion.first_step)) * speed;
+        return (motion.phase_time_error + start_shift(world, motion.first_step)) * speed;
     }
     // Root mean square displacement of the vibrations that began between the two samples. It is estimated as the part
     // of the change of the displacements that the velocities at both samples do not explain: the change minus the
@@ -258,7 +258,8 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     motion.lost = std::min(motion.lost, motion.largest);
     // The position error by a wrong phase is at most twice the amplitude of the vibration. The amplitude is sqrt(2)
     // speed / frequency.
-    const Real phase = frequency > 0 ? std::min(motion.lead, 2 * std::numbers::sqrt2 / frequency) : motion.lead;
+    const Real phase = frequency > 0 ? std::min(motion.phase_time_error, 2 * std::numbers::sqrt2 / frequency)
+                                     : motion.phase_time_error;
     return phase * speed + motion.lost;
 }
 
@@ -304,7 +305,7 @@ void StepError::add_to(std::vector<ErrorEstimate>& bodies) const {
         const auto motion = motions_.find(estimate.body);
         if (motion == motions_.end()) continue;
         const Motion& found = motion->second;
-        if (!(found.moved > found.still)) continue;
+        if (!(found.moved > found.rest_displacement)) continue;
         estimate.step = std::min(Real{1}, found.error / found.moved);
         if (!found.deformation.displacement.empty())
             estimate.deformation = std::min(Real{1}, found.largest / found.moved);

@@ -33,24 +33,24 @@ private:
         Vec3 start_spin = Vec3::Zero();            // angular momentum of a rigid body at the start [kg m^2/s]
         Vec3 velocity = Vec3::Zero();              // velocity of the centre of mass at the last sample [m/s]
         std::optional<AttachmentHandle> holder{};  // an attachment that holds nodes of the body
-        RigidPose mesh{};                          // pose of the rest mesh in the frame of the deformation
+        RigidPose rest_mesh_pose{};                // pose of the rest mesh in the frame of the deformation
         Deformation deformation{};                 // deformation at the last sample; empty for a rigid body
         Real first_step = 0;                       // mean length of the steps before the second sample [s]
         Real acceleration = -1;                    // mean acceleration until the second sample; -1: unknown [m/s^2]
-        // Position error because bodies rebound in wrong directions or too late [m]. deflection_rate: growth rate of
-        // `deflected` by the wrong directions [m/s].
-        Real deflected = 0, deflection_rate = 0;
+        // Position error because bodies rebound in wrong directions or too late [m]. rebound_error_rate: growth rate of
+        // `rebound_error` by the wrong directions [m/s].
+        Real rebound_error = 0, rebound_error_rate = 0;
         Real tumbled = 0;  // position error due to free rotation [m]
         // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the
         // squared displacements times the masses [kg m^2].
         Real stiffness = 0, inertia = 0;
-        Real lead = 0;        // phase error of vibrations, summed over the samples, as a time [s]
-        Real dissipated = 0;  // energy that the world had dissipated at the start [J]
-        Real lost = 0;        // amplitude of the vibrations that numerical damping of the theta method has removed [m]
-        Real largest = 0;     // largest root mean square displacement by deformation so far [m]
-        Real error = 0;       // largest error so far [m]
-        Real moved = 0;       // largest root mean square displacement from the start so far [m]
-        Real still = 0;       // largest displacement that counts as rest [m]
+        Real phase_time_error = 0;  // phase error of vibrations, summed over the samples, as a time [s]
+        Real dissipated = 0;        // energy that the world had dissipated at the start [J]
+        Real lost = 0;     // amplitude of the vibrations that numerical damping of the theta method has removed [m]
+        Real largest = 0;  // largest root mean square displacement by deformation so far [m]
+        Real error = 0;    // largest error so far [m]
+        Real moved = 0;    // largest root mean square displacement from the start so far [m]
+        Real rest_displacement = 0;  // largest displacement that counts as rest [m]
     };
     struct Interval;
     struct Frame;

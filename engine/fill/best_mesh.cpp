@@ -4,17 +4,17 @@
 #include <optional>
 #include <utility>
 
+#include "engine/mesh/repair/remove_flat_triangles.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
-#include "engine/mesh/repair/thin_knots.h"
 
 namespace skerry::mesh {
 
 namespace {
 
-// A knot is a very flat triangle of the surface, which thin_knots removes. Upper limit of its altitude, as a fraction
+// Triangles of the surface with a lower altitude are removed (remove_flat_triangles). The limit is given as a fraction
 // of the mean edge of the surface (measured: docs/decisions/0012).
-constexpr Real knot_altitude = 0.4;
+constexpr Real least_altitude = 0.4;
 // Upper limits of the edge length that are tried, as multiples of the wanted edge. Near finer parts of the surface
 // Netgen makes smaller tetrahedra.
 constexpr Real largest_edges[] = {1.5, 1, 0.7};
@@ -82,16 +82,17 @@ void try_fill(const SurfaceMesh& surface, const std::string& surface_name, const
     }
 }
 
-/// Removes knots from the surface within the tolerance. thin_knots checks the distance to the old surface at few points
-/// only. If a full check then finds a distance above `tolerance`, thin_knots runs again with a smaller tolerance.
-ThinnedSurface thinned_within_tolerance(const SurfaceMesh& surface, Real tolerance) {
+/// Removes very flat triangles from the surface within the tolerance. remove_flat_triangles checks the distance to the
+/// old surface at few points only. If a full check then finds a distance above `tolerance`, remove_flat_triangles runs
+/// again with a smaller tolerance.
+RepairedSurface repaired_within_tolerance(const SurfaceMesh& surface, Real tolerance) {
     constexpr int tries = 4;
     constexpr Real reduction = 0.75;
     Real reduced = tolerance;
     for (int i = 0; i < tries; ++i, reduced *= reduction) {
-        ThinnedSurface thinned =
-            thin_knots(surface, {.tolerance = reduced, .altitude = knot_altitude * mean_edge(surface)});
-        if (surface_distance(surface, thinned.surface).greatest() <= tolerance) return thinned;
+        RepairedSurface repaired =
+            remove_flat_triangles(surface, {.tolerance = reduced, .altitude = least_altitude * mean_edge(surface)});
+        if (surface_distance(surface, repaired.surface).greatest() <= tolerance) return repaired;
     }
     return {};
 }
@@ -103,15 +104,15 @@ BestMesh best_mesh(const BestMeshTask& task) {
     try_fill(task.surface, "the unchanged surface", task, best);
     if (best.missing || !(task.tolerance > 0)) return best;
     if (task.setup.progress) task.setup.progress("removing very flat triangles from the surface");
-    const ThinnedSurface thinned = thinned_within_tolerance(task.surface, task.tolerance);
-    if (thinned.collapsed + thinned.flipped == 0) return best;
-    BestMesh thinned_best;
-    try_fill(thinned.surface, "the surface without very flat triangles", task, thinned_best);
-    best.may_change = thinned_best.may_change = best.may_change || thinned_best.may_change;
-    if (!(thinned_best.step > least_gain * best.step)) return best;
-    thinned_best.collapsed = thinned.collapsed;
-    thinned_best.flipped = thinned.flipped;
-    return thinned_best;
+    const RepairedSurface repaired = repaired_within_tolerance(task.surface, task.tolerance);
+    if (repaired.collapsed + repaired.flipped == 0) return best;
+    BestMesh repaired_best;
+    try_fill(repaired.surface, "the surface without very flat triangles", task, repaired_best);
+    best.may_change = repaired_best.may_change = best.may_change || repaired_best.may_change;
+    if (!(repaired_best.step > least_gain * best.step)) return best;
+    repaired_best.collapsed = repaired.collapsed;
+    repaired_best.flipped = repaired.flipped;
+    return repaired_best;
 }
 
 }  // namespace skerry::mesh

@@ -36,7 +36,7 @@ inline constexpr Real least_gain = 1.05;
 
 /// Fills the surface several times, with different sizes of tetrahedra, and returns the mesh with the longest stable
 /// step. With a tolerance above 0 it also tries the surface without needles and caps, which are thin triangles
-/// (thin_knots.h).
+/// (remove_flat_triangles.h).
 BestMesh best_mesh(const BestMeshTask& task);
 
 }  // namespace skerry::mesh

@@ -78,7 +78,7 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
     if (problem.empty() && command.action == LiveAction::seen) {
         if (command.number <= client->sent) client->seen = std::max(client->seen, command.number);
     } else if (problem.empty() && command.action == LiveAction::fields) {
-        client->content = command.content;
+        client->requested_content = command.content;
         client->version = 0;  // the present state is sent again, with the fields that the browser now requests
     } else if (problem.empty()) {
         if (command.action == LiveAction::pull) {
@@ -148,19 +148,19 @@ void LiveHub::mark_changed() {
     ++version_;
 }
 
-LiveHub::Wish LiveHub::wish() {
+LiveHub::FrameRequest LiveHub::requested_frame() {
     const std::lock_guard lock(mutex_);
-    Wish wish;
+    FrameRequest request;
     for (const Client& client : clients_) {
         if (client.closed || client.version == version_) continue;
         if (!client.is_ready()) {
             dropped_.fetch_add(1, std::memory_order_relaxed);
             continue;
         }
-        wish.frame = true;
-        wish.content = std::max(wish.content, client.content);
+        request.frame = true;
+        request.content = std::max(request.content, client.requested_content);
     }
-    return wish;
+    return request;
 }
 
 std::shared_ptr<Snapshot> LiveHub::free_snapshot() {

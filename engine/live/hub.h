@@ -76,13 +76,13 @@ public:
     /// Notes that the world may differ from the last snapshot, so that browsers get a new frame.
     void mark_changed();
 
-    struct Wish {
+    struct FrameRequest {
         bool frame = false;                           // at least one browser waits for a frame
         FrameContent content = FrameContent::motion;  // least content with the fields that these browsers show
     };
     /// Finds out whether browsers wait for a frame, and the fields that they show. A browser that has not acknowledged
     /// earlier frames does not wait; one dropped frame is counted for it if the world has changed since its last frame.
-    Wish wish();
+    FrameRequest requested_frame();
     /// Returns a snapshot to be overwritten: one that no browser reads any more, or a new one.
     std::shared_ptr<Snapshot> free_snapshot();
     void publish(std::shared_ptr<Snapshot> snapshot);
@@ -103,7 +103,7 @@ private:
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
         bool closed = false;                          // true: its thread ends the connection
-        FrameContent content = FrameContent::motion;  // smallest content that has all fields that the browser shows
+        FrameContent requested_content = FrameContent::motion;  // smallest requested_content that has all fields that the browser shows
         bool pulls = false;                           // true: the browser pulls a body
         std::deque<std::string> texts;                // messages that wait for its thread
         // number of the run that its stream shows; 0: it needs a new stream

@@ -239,11 +239,11 @@ void LiveRun::show(const World& world, bool between_calls) {
     if (std::exchange(changed_, false) || world.time() != shown_time_) hub_.mark_changed();
     shown_time_ = world.time();
     if (between_calls && taker_.is_other_run(world)) begin_run(world);
-    const LiveHub::Wish wish = hub_.wish();
+    const LiveHub::FrameRequest request = hub_.requested_frame();
     sample_speed(world);
-    if (!wish.frame) return;
+    if (!request.frame) return;
     const std::shared_ptr<Snapshot> snapshot = hub_.free_snapshot();
-    taker_.take(world, wish.content, *snapshot);
+    taker_.take(world, request.content, *snapshot);
     snapshot->speed = speed_;
     snapshot->probes.resize(probes_.size());
     for (std::size_t p = 0; p < probes_.size(); ++p) {

@@ -85,7 +85,7 @@ bool LiveEncoder::is_outgrown(const Snapshot& snapshot) const {
 /// Returns the 99th percentile of the positive finite values in `values_` as the upper end of a legend, so that few
 /// extreme values do not stretch the legend. For up to 100 values this is the largest. Returns 0 if there are none.
 /// Reorders `values_`, and removes values that are not positive or not finite.
-Real LiveEncoder::usual() {
+Real LiveEncoder::legend_top() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;
     const Real rank = std::ceil(0.99 * static_cast<Real>(values_.size() - 1));
@@ -94,25 +94,25 @@ Real LiveEncoder::usual() {
     return *position;
 }
 
-Real LiveEncoder::usual(std::size_t field) {
+Real LiveEncoder::legend_top(std::size_t field) {
     values_.clear();
     for (const PageStream::BodyValues& body : stream_.values())
         values_.insert(values_.end(), body.field[field].begin(), body.field[field].end());
-    return usual();
+    return legend_top();
 }
 
 std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
-    Json top = object_of({{"speed", usual(0)},
-                          {"stress", usual(stress_field)},
-                          {"strain", usual(strain_field)},
-                          {"error", usual(error_field)}});
+    Json top = object_of({{"speed", legend_top(0)},
+                          {"stress", legend_top(stress_field)},
+                          {"strain", legend_top(strain_field)},
+                          {"error", legend_top(error_field)}});
     values_.clear();
     for (const Contact& contact : snapshot.frame.contacts) values_.push_back(contact.force().norm());
-    top["force"] = usual();
+    top["force"] = legend_top();
     values_.clear();
     for (const LineFrame& line : snapshot.frame.lines)
         for (const Real force : line.force) values_.push_back(std::abs(force));
-    top["line_force"] = usual();
+    top["line_force"] = legend_top();
     Json pull;
     const auto own = std::ranges::find(snapshot.pulls, client, &std::pair<std::uint64_t, PullState>::first);
     if (own != snapshot.pulls.end()) pull = object_of({{"force", own->second.force}, {"length", own->second.length}});

@@ -63,8 +63,8 @@ public:
 
 private:
     std::string row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client);
-    Real usual(std::size_t field);
-    Real usual();
+    Real legend_top(std::size_t field);
+    Real legend_top();
 
     PageStream stream_;
     PageCounts known_;

@@ -104,7 +104,7 @@ bool any_overlap(const Mesh& mesh) {
 /// wrong place and inverts the tetrahedra around it; after reversal, these would overlap their neighbours across faces.
 /// Therefore, if only some tetrahedra are inverted, and reversal makes any of them overlap a neighbour, all stay as
 /// they are.
-void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
+void reverse_inverted(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         if (orientation(mesh, mesh.tetrahedra[t]) == Orientation::inverted) inverted.push_back(t);
@@ -159,7 +159,7 @@ Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::str
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
     mesh.vectors = std::move(raw.vectors);
-    turn_valid(path, mesh, notes);
+    reverse_inverted(path, mesh, notes);
     if (!raw.sets.empty()) take_sets(path, raw.sets, used.number, raw_nodes, mesh, notes);
     if (mesh.nodes.size() < raw_nodes) mesh.file_number = std::move(used.number);
     return mesh;
@@ -169,7 +169,7 @@ Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::str
 
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes) {
     require_valid(mesh, name);
-    turn_valid(name, mesh, notes);
+    reverse_inverted(name, mesh, notes);
     for (auto& [set_name, set] : mesh.sets) {
         require_set(name, set_name, set, mesh.nodes.size(), mesh.tetrahedra);
         tidy(set);

@@ -17,48 +17,50 @@ Mat3 frame_of(const Vec3& normal) {
 }
 
 /// Weight of a node in the stencil of a contact (see LumpedContacts).
-struct Touch {
+struct NodeWeight {
     Index node, contact;
     Real weight;
 };
 
 /// Lists the stencil weights of all nodes that can move and whose mass is not coupled to other nodes. The list is
 /// sorted by node, then by contact.
-std::vector<Touch> list_touches(const LumpedContacts& contacts) {
+std::vector<NodeWeight> list_node_weights(const LumpedContacts& contacts) {
     std::vector<bool> is_coupled(contacts.inverse_mass.size(), false);
     for (const CoupledNodes& group : contacts.coupled)
         for (const Index node : group.node) is_coupled[static_cast<std::size_t>(node)] = true;
     for (const RigidPoints& body : contacts.rigid)
         for (const Index node : body.node) is_coupled[static_cast<std::size_t>(node)] = true;
-    std::vector<Touch> touches;
+    std::vector<NodeWeight> weights;
     for (std::size_t i = 0; i < contacts.node.size(); ++i)
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = contacts.node[i][a];
             const Real weight = contacts.weight[i][a];
             if (weight != 0 && contacts.inverse_mass[node] > 0 && !is_coupled[node])
-                touches.push_back({node, static_cast<Index>(i), weight});
+                weights.push_back({node, static_cast<Index>(i), weight});
         }
-    std::stable_sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) { return a.node < b.node; });
-    return touches;
+    std::stable_sort(weights.begin(), weights.end(),
+                     [](const NodeWeight& a, const NodeWeight& b) { return a.node < b.node; });
+    return weights;
 }
 
-/// Finds the stencil weights of a group of nodes in all contacts. In the result, Touch::node is the index of the node
-/// within the group.
-class GroupTouches {
+/// Finds the stencil weights of a group of nodes in all contacts. In the result, NodeWeight::node is the index of the
+/// node within the group.
+class NodeWeightsOfGroup {
 public:
-    explicit GroupTouches(const LumpedContacts& contacts) : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
+    explicit NodeWeightsOfGroup(const LumpedContacts& contacts)
+        : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
 
-    std::vector<Touch> of(const std::vector<Index>& group) {
+    std::vector<NodeWeight> of(const std::vector<Index>& group) {
         const std::size_t count = group.size();
         std::ranges::fill(place_, count);
         for (std::size_t k = 0; k < count; ++k) place_[static_cast<std::size_t>(group[k])] = k;
-        std::vector<Touch> touches;
+        std::vector<NodeWeight> weights;
         for (std::size_t i = 0; i < contacts_.node.size(); ++i)
             for (std::size_t a = 0; a < 4; ++a)
                 if (const std::size_t at = place_[static_cast<std::size_t>(contacts_.node[i][a])];
                     contacts_.weight[i][a] != 0 && at < count)
-                    touches.push_back({static_cast<Index>(at), static_cast<Index>(i), contacts_.weight[i][a]});
-        return touches;
+                    weights.push_back({static_cast<Index>(at), static_cast<Index>(i), contacts_.weight[i][a]});
+        return weights;
     }
 
 private:
@@ -72,22 +74,22 @@ private:
 /// stencil; x: arm from the centre of mass to the node, for a round body to its contact point; m: mass; J: inertia
 /// tensor; [x] v = x cross v.
 void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
-    GroupTouches find(contacts);
+    NodeWeightsOfGroup find(contacts);
     const auto crossing = [](const Vec3& v) {
         Mat3 matrix;
         matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
         return matrix;
     };
-    const auto arm_of = [&](const RigidPoints& body, const Touch& touch) {
-        if (!body.touch.empty()) return body.touch[static_cast<std::size_t>(touch.contact)];
-        return Vec3(body.arm[static_cast<std::size_t>(touch.node)] -
-                    std::copysign(body.radius, touch.weight) *
-                        contacts.normal[static_cast<std::size_t>(touch.contact)]);
+    const auto arm_of = [&](const RigidPoints& body, const NodeWeight& entry) {
+        if (!body.weight.empty()) return body.touch[static_cast<std::size_t>(entry.contact)];
+        return Vec3(body.arm[static_cast<std::size_t>(entry.node)] -
+                    std::copysign(body.radius, entry.weight) *
+                        contacts.normal[static_cast<std::size_t>(entry.contact)]);
     };
     for (const RigidPoints& body : contacts.rigid) {
-        const std::vector<Touch> touches = find.of(body.node);
-        for (const Touch& a : touches)
-            for (const Touch& b : touches) {
+        const std::vector<NodeWeight> weights = find.of(body.node);
+        for (const NodeWeight& a : weights)
+            for (const NodeWeight& b : weights) {
                 const Mat3 arm = crossing(arm_of(body, a)), other = crossing(arm_of(body, b));
                 const Mat3 block =
                     a.weight * b.weight *
@@ -101,12 +103,12 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
 
 /// Adds the blocks of W between contacts on the same implicit body, due to the deformation of this body.
 void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
-    GroupTouches find(contacts);
+    NodeWeightsOfGroup find(contacts);
     for (const StrainedPoints& body : contacts.strained) {
         const std::size_t count = body.node.size();
-        const std::vector<Touch> touches = find.of(body.node);
-        for (const Touch& a : touches)
-            for (const Touch& b : touches) {
+        const std::vector<NodeWeight> weights = find.of(body.node);
+        for (const NodeWeight& a : weights)
+            for (const NodeWeight& b : weights) {
                 const Mat3& response =
                     body.response[static_cast<std::size_t>(a.node) * count + static_cast<std::size_t>(b.node)];
                 parts.push_back({a.contact, b.contact,
@@ -118,12 +120,12 @@ void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame
 
 /// Adds the blocks of W between contacts on the same group of nodes with a coupled mass matrix.
 void add_coupled(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
-    GroupTouches find(contacts);
+    NodeWeightsOfGroup find(contacts);
     for (const CoupledNodes& group : contacts.coupled) {
         const std::size_t count = group.node.size();
-        const std::vector<Touch> touches = find.of(group.node);
-        for (const Touch& a : touches)
-            for (const Touch& b : touches) {
+        const std::vector<NodeWeight> weights = find.of(group.node);
+        for (const NodeWeight& a : weights)
+            for (const NodeWeight& b : weights) {
                 const Real inverse =
                     group.inverse[static_cast<std::size_t>(a.node) * count + static_cast<std::size_t>(b.node)];
                 const Real coupling = a.weight * b.weight * inverse;
@@ -148,19 +150,19 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = 0; a < 4; ++a) velocity += contacts.weight[i][a] * contacts.velocity[contacts.node[i][a]];
         problem.q.push_back(frame[i].transpose() * velocity);
     }
-    const std::vector<Touch> touches = list_touches(contacts);
+    const std::vector<NodeWeight> weights = list_node_weights(contacts);
     std::vector<BlockPart> parts;
-    for (std::size_t begin = 0, end = 0; begin < touches.size(); begin = end) {
-        while (end < touches.size() && touches[end].node == touches[begin].node) ++end;
-        const Real inverse_mass = contacts.inverse_mass[touches[begin].node];
+    for (std::size_t begin = 0, end = 0; begin < weights.size(); begin = end) {
+        while (end < weights.size() && weights[end].node == weights[begin].node) ++end;
+        const Real inverse_mass = contacts.inverse_mass[weights[begin].node];
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
-                const Index i = touches[a].contact, j = touches[b].contact;
+                const Index i = weights[a].contact, j = weights[b].contact;
                 // Contribution w_i w_j / m of one node to S_ij. In world axes the block is W_ij = S_ij I
                 // (docs/methods/contact.md 2.1); here it is rotated into the frames of both contacts, bitwise
                 // symmetric. In a diagonal block both rotations cancel. They are left out there, because they would add
                 // rounding errors.
-                const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
+                const Real coupling = weights[a].weight * weights[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,
                      i == j ? Mat3(coupling * Mat3::Identity()) : Mat3(coupling * (frame[i].transpose() * frame[j]))});

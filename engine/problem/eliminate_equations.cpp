@@ -46,12 +46,12 @@ struct VelocityRow {
 /// Quantity of an equation that keeps its value of the step when the contact impulses change.
 /// - velocity: the velocity of the row. The impulse of the row in the step is known.
 /// - impulse: the impulse of the row.
-/// - held: the velocity of the row. The impulse of the row in the step is not known; find_held_impulses() computes it.
-enum class Keeps { velocity, impulse, held };
+/// - velocity_with_unknown_impulse: the velocity of the row. The impulse of the row in the step is not known; find_held_impulses() computes it.
+enum class KeptQuantity { velocity, impulse, velocity_with_unknown_impulse };
 
 struct EquationRow {
     VelocityRow row;
-    Keeps keeps = Keeps::velocity;
+    KeptQuantity keeps = KeptQuantity::velocity;
     Real impulse = 0;  // [N s] or [N m s]
 };
 
@@ -96,7 +96,7 @@ public:
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& term) { return term.frame == frame; });
             const Vec3 beside = frame != no_index && is_first && weight != 0
-                                    ? inputs_.rigid.nodes.beside_core(node, weight, c, inputs_.normal[c], inputs_.touch)
+                                    ? inputs_.rigid.nodes.core_arm(node, weight, c, inputs_.normal[c], inputs_.touch)
                                     : Vec3(Vec3::Zero());
             add_node(row, node, weight, along, nullptr, beside);
         }
@@ -190,12 +190,12 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
                 for (const auto& term : row.frames) rows.back().row.add_frame(term.frame, term.along, term.turn);
                 continue;
             }
-            rows.push_back({std::move(row), Keeps::velocity, impulse.z() / c});
+            rows.push_back({std::move(row), KeptQuantity::velocity, impulse.z() / c});
             continue;
         }
         for (Index k = 0; k < 3; ++k)
             rows.push_back({row_of_joint(block, inputs, block.frame.col(k)),
-                            k == 2 && !block.axis.locked ? Keeps::impulse : Keeps::velocity, impulse[k]});
+                            k == 2 && !block.axis.locked ? KeptQuantity::impulse : KeptQuantity::velocity, impulse[k]});
     }
 }
 
@@ -209,7 +209,8 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
         for (Index k = 0; k < (is_weld ? 3 : 1); ++k)
             rows.push_back({mobilities.of_stencil(ties.stencil[i], is_weld ? Vec3(Vec3::Unit(k)) : ties.impulse[i],
                                                   &ties.point[i]),
-                            is_weld ? Keeps::velocity : Keeps::impulse, is_weld ? ties.impulse[i][k] : 1});
+                            is_weld ? KeptQuantity::velocity : KeptQuantity::impulse,
+                            is_weld ? ties.impulse[i][k] : 1});
     }
 }
 
@@ -220,7 +221,7 @@ void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mo
     Vec3 last = Vec3::Zero();
     for (Index p = block.points.begin; p < block.points.end; ++p) {
         const Vec3 next = cables.impulse[p] * cables.direction[p];
-        rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), Keeps::impulse, 1});
+        rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), KeptQuantity::impulse, 1});
         last = next;
     }
 }
@@ -236,7 +237,7 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
             sum.nodes.insert(sum.nodes.end(), row.nodes.begin(), row.nodes.end());
             for (const auto& frame : row.frames) sum.add_frame(frame.frame, frame.along, frame.turn);
         }
-        rows.push_back({std::move(sum), Keeps::velocity, cables.impulse[block.points.begin + k]});
+        rows.push_back({std::move(sum), KeptQuantity::velocity, cables.impulse[block.points.begin + k]});
     }
 }
 
@@ -279,7 +280,7 @@ std::vector<Real> normal_mobilities(const ContactProblem& problem) {
 }
 
 /// Equations and contacts that act on the same coupled masses.
-struct Group {
+struct CoupledEquations {
     std::vector<EquationRow*> kept_velocity, kept_impulse;
     std::vector<Index> contacts;  // indices of the contacts in ContactProblem
 };
@@ -305,14 +306,14 @@ Eigen::VectorXd impulses_of(const std::vector<EquationRow*>& equations) {
     return impulses;
 }
 
-/// Finds the impulses of the rows of the kind Keeps::held from the condition that the velocities of these rows stay as
-/// before the solve. `E`: velocity change of each equation per unit impulse of each equation. `rate_by_others`:
-/// velocity changes of all equations due to contacts and known impulses.
+/// Finds the impulses of the rows of the kind KeptQuantity::velocity_with_unknown_impulse from the condition that the
+/// velocities of these rows stay as before the solve. `E`: velocity change of each equation per unit impulse of each
+/// equation. `rate_by_others`: velocity changes of all equations due to contacts and known impulses.
 void find_held_impulses(const Eigen::MatrixXd& E, const Eigen::VectorXd& rate_by_others,
                         const std::vector<EquationRow*>& equations) {
     std::vector<Index> held;
     for (std::size_t k = 0; k < equations.size(); ++k)
-        if (equations[k]->keeps == Keeps::held) held.push_back(static_cast<Index>(k));
+        if (equations[k]->keeps == KeptQuantity::velocity_with_unknown_impulse) held.push_back(static_cast<Index>(k));
     if (held.empty()) return;
     const Eigen::VectorXd rate = rate_by_others + E * impulses_of(equations);
     const Eigen::VectorXd found = -(inverse_of(E(held, held)) * rate(held));
@@ -334,7 +335,7 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     for (const HeldDirection& held : equations.held)
         rows.push_back({mobilities.of_stencil({{held.node, held.node, held.node, held.node}, {1, 0, 0, 0}},
                                               held.direction, nullptr),
-                        Keeps::held, 0});
+                        KeptQuantity::velocity_with_unknown_impulse, 0});
     std::erase_if(rows, [&](const EquationRow& equation) { return mobilities.leader(equation.row) == no_index; });
     if (rows.empty()) return {};
     UnionFind sets;
@@ -344,10 +345,10 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
                                    [&](Index leader) { sets.join(mobilities.leader(equation.row), leader); });
     // Each group holds the equations whose leaders are in one set of `sets`. Key: root of the set (element that stands
     // for all of its elements).
-    std::map<Index, Group> groups;
+    std::map<Index, CoupledEquations> groups;
     for (EquationRow& equation : rows) {
-        Group& group = groups[sets.root(mobilities.leader(equation.row))];
-        (equation.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);
+        CoupledEquations& group = groups[sets.root(mobilities.leader(equation.row))];
+        (equation.keeps == KeptQuantity::impulse ? group.kept_impulse : group.kept_velocity).push_back(&equation);
     }
     std::vector<std::array<VelocityRow, 3>> of_contact;
     for (std::size_t i = 0; i < contact.size(); ++i) {

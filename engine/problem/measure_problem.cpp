@@ -22,19 +22,20 @@ Real coulomb_gap(const Vec3& r, const Vec3& u, Real mu, Friction friction) {
 }  // namespace
 
 ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction) {
-    Real lack = 0, q = 0, r = 0, u = 0, gap = 0;
+    Real natural_map_squares = 0, q = 0, r = 0, u = 0, gap = 0;
     for (std::size_t i = 0; i < problem.q.size(); ++i) {
         Vec3 velocity = problem.q[i];
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
             velocity += problem.block[k] * reaction[problem.column[k]];
-        lack += natural_map(reaction[i], velocity, problem.mu[i], friction).squaredNorm();
+        natural_map_squares += natural_map(reaction[i], velocity, problem.mu[i], friction).squaredNorm();
         gap += coulomb_gap(reaction[i], velocity, problem.mu[i], friction);
         q += problem.q[i].squaredNorm();
         r += reaction[i].squaredNorm();
         u += velocity.squaredNorm();
     }
-    if (lack == 0) return {0, 0, 0, gap};
-    return {std::sqrt(lack), std::sqrt(lack / std::max({q, r, u})), std::sqrt(lack / q), gap};
+    if (natural_map_squares == 0) return {0, 0, 0, gap};
+    return {std::sqrt(natural_map_squares), std::sqrt(natural_map_squares / std::max({q, r, u})),
+            std::sqrt(natural_map_squares / q), gap};
 }
 
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction) {

@@ -89,7 +89,7 @@ void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, R
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0 && stencil.node[a] == middle)
                 body.touch[i] = stencil.weight[a] *
-                                rigid.beside_core(middle, stencil.weight[a], row, contacts.normal[row], contacts.touch);
+                                rigid.core_arm(middle, stencil.weight[a], row, contacts.normal[row], contacts.touch);
     }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 /// Number of times that the edge length of a mesh can be doubled, and its numbers of cells halved, while these numbers
 /// stay whole. A mesh from a file or a filled surface has no such numbers; for it only the general limit applies.
-int halvings_of(const MeshEntry& mesh) {
+int possible_coarsenings(const MeshEntry& mesh) {
     const auto of_cells = [](int cells) { return std::countr_zero(static_cast<unsigned>(cells)); };
     if (mesh.box) {
         const std::array<int, 3>& cells = mesh.box->cells;
@@ -115,10 +115,10 @@ private:
 
 /// Reason why the key `refine` of a mesh cannot have this value; empty if it can. `parts`: finds the entries that name
 /// parts of the body's mesh; nullptr for a collider. `rigid`: true for rigid bodies and colliders.
-std::string why_not(const MeshEntry& mesh, int refine, bool rigid, NamedParts* parts) {
+std::string reason_against(const MeshEntry& mesh, int refine, bool rigid, NamedParts* parts) {
     if (std::abs(refine) > most_refinements)
         return "values are limited to " + std::to_string(most_refinements) + " refinements";
-    if (const int most = halvings_of(mesh); refine < -most)
+    if (const int most = possible_coarsenings(mesh); refine < -most)
         return numbers_of(mesh) + " cannot be halved " + (most == 0 ? "" : std::to_string(-refine) + " times ") +
                "without remainder";
     if (rigid && mesh.file && refine < 0) return "only deformable bodies get coarser meshes in place of a file";
@@ -151,7 +151,7 @@ void for_each_mesh(const SceneFile& scene, auto use) {
 
 void require_levels(const SceneFile& scene) {
     for_each_mesh(scene, [](const MeshEntry& mesh, bool rigid, NamedParts* parts) {
-        const std::string reason = why_not(mesh, mesh.refine, rigid, parts);
+        const std::string reason = reason_against(mesh, mesh.refine, rigid, parts);
         if (!reason.empty())
             mesh.place.key("refine").refuse(std::to_string(mesh.refine), "a refinement that this mesh allows", reason);
     });
@@ -165,7 +165,7 @@ SceneLevels levels_of(const SceneFile& scene, const std::filesystem::path& file)
         if (mesh.place.file() != file) {
             own.why_not_coarser = own.why_not_finer = "it is in the included scene " + mesh.place.file().string();
         } else {
-            const auto reason = [&](int level) { return why_not(mesh, mesh.refine + level, rigid, parts); };
+            const auto reason = [&](int level) { return reason_against(mesh, mesh.refine + level, rigid, parts); };
             while (reason(own.finest + 1).empty()) ++own.finest;
             if (mesh.file || (mesh.surface && !mesh.edge)) {
                 own.why_not_coarser = "its surface is from a file, and larger triangles can change the shape";

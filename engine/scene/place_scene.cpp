@@ -23,16 +23,16 @@ public:
         for (auto& [name, material] : scene.materials.items) rename(name);
         for (PairEntry& pair : scene.pairs)
             for (std::string& material : pair.materials) rename(material);
-        number(scene.bodies, "body_");
-        number(scene.colliders, "collider_");
-        number(scene.joints, "joint_");
-        number(scene.ties, "tie_");
-        number(scene.cables, "cable_");
-        number(scene.cavities, "cavity_");
-        number(scene.springs, "spring_");
-        number(scene.pipes, "pipe_");
-        number(scene.loads, "load_");
-        number(scene.fibres, "fibres_");
+        name_and_prefix(scene.bodies, "body_");
+        name_and_prefix(scene.colliders, "collider_");
+        name_and_prefix(scene.joints, "joint_");
+        name_and_prefix(scene.ties, "tie_");
+        name_and_prefix(scene.cables, "cable_");
+        name_and_prefix(scene.cavities, "cavity_");
+        name_and_prefix(scene.springs, "spring_");
+        name_and_prefix(scene.pipes, "pipe_");
+        name_and_prefix(scene.loads, "load_");
+        name_and_prefix(scene.fibres, "fibres_");
         for (BodyEntry& body : scene.bodies) place(body);
         for (ColliderEntry& collider : scene.colliders) place(collider);
         for (NoCollisionEntry& pair : scene.no_collision) {
@@ -81,7 +81,7 @@ private:
     }
     /// Gives unnamed entries their default names, and then puts the name of the include in front of all names.
     template <class Entry>
-    void number(std::vector<Entry>& entries, const char* kind) const {
+    void name_and_prefix(std::vector<Entry>& entries, const char* kind) const {
         for (std::size_t i = 0; i < entries.size(); ++i) {
             if (entries[i].name.empty()) entries[i].name = kind + std::to_string(i);
             rename(entries[i].name);

@@ -41,12 +41,12 @@ ProbeRecorder::ProbeRecorder(const Scene& scene) {
     for (const Probe& probe : scene.probes) {
         Tracked tracked{.body = probe.body, .inside = std::vector<char>(scene.world.positions(probe.body).size(), 0)};
         for (const Index node : probe.nodes) tracked.inside[static_cast<std::size_t>(node)] = 1;
-        auto stressed = std::ranges::find(stressed_, probe.body, &Stressed::body);
-        if (stressed == stressed_.end()) stressed = stressed_.insert(stressed, {.body = probe.body});
-        tracked.stressed = static_cast<std::size_t>(stressed - stressed_.begin());
+        auto stress = std::ranges::find(stress_nodes_, probe.body, &StressNodes::body);
+        if (stress == stress_nodes_.end()) stress = stress_nodes_.insert(stress, {.body = probe.body});
+        tracked.stress_row = static_cast<std::size_t>(stress - stress_nodes_.begin());
         for (const Index node : probe.nodes) {
-            tracked.stressed_nodes.push_back(stressed->nodes.size());
-            stressed->nodes.push_back(node);
+            tracked.stress_rows.push_back(stress->nodes.size());
+            stress->nodes.push_back(node);
         }
         tracked_.push_back(std::move(tracked));
         records_.emplace_back().name = probe.name;
@@ -56,7 +56,7 @@ ProbeRecorder::ProbeRecorder(const Scene& scene) {
 void ProbeRecorder::sample(const World& world, Real seconds) {
     std::vector<State> states;
     std::vector<std::vector<Mat3>> stress;
-    for (const Stressed& of : stressed_) stress.push_back(world.node_stress(of.body, of.nodes));
+    for (const StressNodes& of : stress_nodes_) stress.push_back(world.node_stress(of.body, of.nodes));
     for (std::size_t p = 0; p < tracked_.size(); ++p) {
         Tracked& tracked = tracked_[p];
         ProbeRecord& record = records_[p];
@@ -84,7 +84,7 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         record.sticking.push_back(sample.sticking);
         record.sliding.push_back(sample.sliding);
         record.slip.push_back(sample.slip);
-        record.von_mises.push_back(largest_von_mises(stress[tracked.stressed], tracked.stressed_nodes));
+        record.von_mises.push_back(largest_von_mises(stress[tracked.stress_row], tracked.stress_rows));
         record.max_von_mises = std::max(record.max_von_mises, record.von_mises.back());
     }
     if (std::count(states.begin(), states.end(), State::slide) == 1)

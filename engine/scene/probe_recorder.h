@@ -43,18 +43,18 @@ private:
         BodyHandle body;
         std::vector<char> inside;  // for each node of the body: nonzero if the node belongs to the probe
         State last_closed = State::open;
-        std::size_t stressed = 0;                   // index in `stressed_` of the probe's body
-        std::vector<std::size_t> stressed_nodes{};  // indices of the probe's nodes in Stressed::nodes
+        std::size_t stress_row = 0;              // index in `stress_nodes_` of the probe's body
+        std::vector<std::size_t> stress_rows{};  // indices of the probe's nodes in StressNodes::nodes
     };
     /// A body, and the nodes of all probes on this body. The stress of these nodes is evaluated in one call, because
     /// each call has to find the tetrahedra around the nodes.
-    struct Stressed {
+    struct StressNodes {
         BodyHandle body;
         std::vector<Index> nodes{};  // node numbers within the body
     };
 
     std::vector<Tracked> tracked_;
-    std::vector<Stressed> stressed_;
+    std::vector<StressNodes> stress_nodes_;
     std::vector<ProbeRecord> records_;
 };
 

@@ -40,8 +40,8 @@ MaterialSettings law_of(const OrthotropicModuli& moduli, const MaterialSettings&
     return orthotropic(moduli, base);
 }
 template <class Entry>
-struct LawBy {};
-struct LawByName {};  // a law given by its name, which is the value of the key "model"
+struct LawFromEntry {};
+struct LawFromName {};  // a law given by its name, which is the value of the key "model"
 std::string_view no_hint(std::string_view) {
     return {};
 }
@@ -112,7 +112,7 @@ const Rule<OrthotropicModuli>& rule_of<OrthotropicModuli>() {
 
 /// Reads an Entry, which sets the law and the elastic moduli of a material.
 template <class Entry>
-struct Value<LawBy<Entry>> {
+struct Value<LawFromEntry<Entry>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, MaterialSettings& out) {
         Entry entry;
         Value<Entry>::read(json, place, doc, entry);
@@ -124,7 +124,7 @@ struct Value<LawBy<Entry>> {
 /// Reads the name of a law. Refuses "orthotropic": the key "orthotropic" gives this law, together with its elastic
 /// constants.
 template <>
-struct Value<LawByName> {
+struct Value<LawFromName> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, MaterialSettings& out) {
         Value<MaterialModel>::read(json, place, doc, out.model);
         if (out.model == MaterialModel::orthotropic)
@@ -320,13 +320,13 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
             .key("bulk_viscosity", &M::bulk_viscosity,
                  {.meaning = "damping ratio of volume changes at the highest natural frequency of an element",
                   .limits = within(0, largest_bulk_viscosity)})
-            .preset<LawByName>("model", {.meaning = "constitutive law"})
+            .preset<LawFromName>("model", {.meaning = "constitutive law"})
             .key("plasticity", &M::plasticity, {.meaning = "yield of the law \"hencky\"; for explicit bodies"})
-            .preset<LawBy<OgdenEntry>>("ogden",
-                                       {.meaning = "law of Ogden for rubber; sets the model and the elastic moduli"})
-            .preset<LawBy<MooneyRivlinEntry>>(
+            .preset<LawFromEntry<OgdenEntry>>(
+                "ogden", {.meaning = "law of Ogden for rubber; sets the model and the elastic moduli"})
+            .preset<LawFromEntry<MooneyRivlinEntry>>(
                 "mooney_rivlin", {.meaning = "law of Mooney and Rivlin: the law of Ogden with the exponents 2 and -2"})
-            .preset<LawBy<OrthotropicModuli>>(
+            .preset<LawFromEntry<OrthotropicModuli>>(
                 "orthotropic", {.meaning = "orthotropic elasticity; sets the model and the elastic constants"})
             .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "model"})
             .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "young_modulus"})

@@ -97,7 +97,7 @@ public:
                                        ". Correct it first; no errors were determined.");
             result.runs.assign(runs_.begin(), runs_.begin() + static_cast<std::ptrdiff_t>(made));
         }
-        if (!lost_.empty()) result.sentences.insert(result.sentences.begin(), lost_);
+        if (!store_failure_.empty()) result.sentences.insert(result.sentences.begin(), store_failure_);
         result.scene = scene_.file.name;
         return result;
     }
@@ -292,8 +292,8 @@ private:
         try {
             write_run(settings_.folder, inputs_[i], runs_[i]);
         } catch (const SceneError& error) {
-            if (!is_lost_.exchange(true))
-                lost_ = std::string("Not all runs could be stored in the folder: ") + error.what() + ".";
+            if (!store_failed_.exchange(true))
+                store_failure_ = std::string("Not all runs could be stored in the folder: ") + error.what() + ".";
         }
     }
 
@@ -335,8 +335,8 @@ private:
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;            // texts that identify all inputs of a run
     std::vector<std::atomic<double>> progress_;  // simulated share of each run's duration, from 0 to 1
-    std::atomic<bool> is_lost_{false};
-    std::string lost_;  // message about the first run that could not be stored; empty if there is none
+    std::atomic<bool> store_failed_{false};
+    std::string store_failure_;  // message about the first run that could not be stored; empty if there is none
     std::atomic<int> done_{0}, running_{0};
     std::atomic<bool> stop_{false};
 };

@@ -155,7 +155,7 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
             .what = recorder_.columns()[c], .size = body ? diagonal(world_, {&*body, 1}) : size_, .reported = reported};
         column.what.probe = display_name;
         add_stress(probe);
-        sources_.push_back({std::move(column), Part::mean, {c}, body ? world_.name(*body) : std::string()});
+        sources_.push_back({std::move(column), Statistic::mean, {c}, body ? world_.name(*body) : std::string()});
     };
     for (const RecordedProbe& probe : of_scene)
         for (; c < recorder_.columns().size() && recorder_.columns()[c].probe == probe.name; ++c)
@@ -170,21 +170,22 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
             if (!is_default(series.quantity)) continue;
             if (!many_bodies_ || (keep_bodies && series.quantity.starts_with("displacement_")))
                 add(added.probe, added.shown, !many_bodies_);
-            if (!added.free) continue;
+            if (!added.is_unattached) continue;
             auto found = std::ranges::find(of_bodies, series.quantity, [](const auto& e) { return e.first.quantity; });
             if (found == of_bodies.end()) found = of_bodies.insert(found, {{of_all, series.quantity, series.unit}, {}});
             found->second.push_back(c);
         }
     for (const auto& [series, columns_of_bodies] : of_bodies)
-        for (const auto& [part, name] :
-             {std::pair{Part::mean, "mean_"}, std::pair{Part::least, "least_"}, std::pair{Part::largest, "largest_"}}) {
+        for (const auto& [statistic, name] :
+             {std::pair{Statistic::mean, "mean_"}, std::pair{Statistic::least, "least_"},
+              std::pair{Statistic::largest, "largest_"}}) {
             if (columns_of_bodies.size() < 2) continue;
             const bool doubled = series.quantity.starts_with(name);
             sources_.push_back(
                 {{.what = {series.probe, doubled ? series.quantity : name + series.quantity, series.unit},
                   .size = size_,
                   .is_statistic = true},
-                 part,
+                 statistic,
                  columns_of_bodies});
         }
 }
@@ -209,7 +210,7 @@ void StudyRecorder::sample() {
 
 std::vector<std::string> StudyRecorder::bodies() const {
     std::vector<std::string> names;
-    for (const Source& source : sources_) names.push_back(source.body);
+    for (const ColumnSource& source : sources_) names.push_back(source.body);
     names.resize(names.size() + contact_columns().size());
     return names;
 }
@@ -222,7 +223,7 @@ std::vector<Real> StudyRecorder::time() const {
 
 std::vector<StudyColumn> StudyRecorder::columns() const {
     std::vector<StudyColumn> columns;
-    for (const Source& source : sources_) {
+    for (const ColumnSource& source : sources_) {
         StudyColumn& column = columns.emplace_back(source.column);
         for (std::size_t r = 0; r < recorder_.row_count(); ++r) {
             const std::span<const Real> row = recorder_.row(r);
@@ -233,9 +234,9 @@ std::vector<StudyColumn> StudyRecorder::columns() const {
                 largest = std::max(largest, row[c]);
             }
             const Real mean = sum / static_cast<Real>(source.recorder_columns.size());
-            column.values.push_back(source.part == Part::mean || std::isnan(mean) ? mean
-                                    : source.part == Part::least                  ? least
-                                                                                  : largest);
+            column.values.push_back(source.statistic == Statistic::mean || std::isnan(mean) ? mean
+                                    : source.statistic == Statistic::least                  ? least
+                                                                                            : largest);
         }
         const auto stress = std::ranges::find(stresses_, source.recorder_columns.front(), &Stress::column);
         if (source.recorder_columns.size() > 1 || stress == stresses_.end() || stress->node == no_index) continue;

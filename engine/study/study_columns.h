@@ -30,10 +30,10 @@ public:
 
 private:
     /// Statistic that combines the values of several columns of `recorder_` into one value.
-    enum class Part { mean, least, largest };
-    struct Source {
+    enum class Statistic { mean, least, largest };
+    struct ColumnSource {
         StudyColumn column;
-        Part part = Part::mean;
+        Statistic statistic = Statistic::mean;
         std::vector<std::size_t> recorder_columns;
         std::string body{};  // see bodies()
     };
@@ -51,7 +51,7 @@ private:
         RecordedProbe probe;
         std::string shown;
         BodyHandle body{};
-        bool free = false;  // true for a body without attachments
+        bool is_unattached = false;  // true for a body without attachments
     };
 
     static std::vector<DefaultProbe> default_probes(const Scene& scene);
@@ -64,7 +64,7 @@ private:
     ProbeRecorder contacts_;  // records the probes with the quantity `contacts`
     bool many_bodies_ = false;
     Real size_ = 0;  // diagonal of the bounding box of all bodies at the start [m]
-    std::vector<Source> sources_;
+    std::vector<ColumnSource> sources_;
     std::vector<Stress> stresses_;
     std::size_t rows_ = 0;  // number of rows that are already included in `stresses_` and `contacts_`
 };

@@ -30,7 +30,7 @@ Index local_node(const Model& model, Index node) {
 
 /// True for explicit and rigid bodies. Contact forces act on them for StepParameters::kick_time. On implicit bodies
 /// they act for the length of the step.
-bool is_kicked(const Model& model, Index body) {
+bool acts_for_force_time(const Model& model, Index body) {
     return deforms(model, body) && model.bodies.implicit[static_cast<std::size_t>(body)].size() == 0;
 }
 
@@ -76,9 +76,9 @@ void view_contacts(WorldState& world) {
         const auto row = static_cast<std::size_t>(rests ? ~rows[i] : rows[i]);
         Contact& contact = record.contact_view[i] = contact_at(world.model, table, row);
         if (rests) contact.impulse *= kick_time / resting.step[row];
-        const bool acts_for_kick =
-            rests || is_kicked(world.model, table.first_body[row]) || is_kicked(world.model, table.second_body[row]);
-        contact.seconds = acts_for_kick ? kick_time : step_time;
+        const bool for_force_time = rests || acts_for_force_time(world.model, table.first_body[row]) ||
+                                    acts_for_force_time(world.model, table.second_body[row]);
+        contact.seconds = for_force_time ? kick_time : step_time;
     }
     record.contact_view_is_current = true;
 }

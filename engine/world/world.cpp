@@ -98,7 +98,7 @@ void WorldState::settle() {
     }
     erase_gone_rows();
     model.extend_derived();
-    find_holders(model);
+    find_holding_attachments(model);
     note_forces(model);
     model.links_open = true;
     cache.extend(model);

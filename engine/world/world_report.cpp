@@ -40,16 +40,16 @@ Energy energy_of(const Model& model, Real time, Real dissipated) {
 namespace {
 
 /// Counts the elements of a body whose volume ratio det F is below 0.2. Does nothing if the body has no smoothed
-/// elements. A smoothed element has the mean deformation gradient F of several tetrahedra. If these are folded against
+/// elements. A smoothed element has the mean deformation gradient F of several tetrahedra. If these are compressed against
 /// each other, det F can be this small although no tetrahedron is compressed this much.
-void note_folds(const Model& model, std::size_t body, WorldReport& report) {
-    constexpr Real folded = 0.2;
+void count_compressed_elements(const Model& model, std::size_t body, WorldReport& report) {
+    constexpr Real compressed = 0.2;
     const Range blocks = model.bodies.blocks[body];
     const ElementInputs elements = model.all_elements();
     const auto of_body =
         elements.count.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
     if (std::ranges::all_of(of_body, [](Index count) { return count == 4; })) return;  // only tetrahedra
-    const VolumeRatios ratios = element_volume_ratios(elements, blocks, model.nodes.position, folded);
+    const VolumeRatios ratios = element_volume_ratios(elements, blocks, model.nodes.position, compressed);
     if (ratios.near_inversion == 0) return;
     if (report.folded == 0) {
         const Index element = ratios.item - blocks.begin * static_cast<Index>(element_lanes);
@@ -184,7 +184,7 @@ namespace {
 
 void note_fastest_turn(const Model& model, WorldReport& report) {
     const ColliderTable& colliders = model.colliders;
-    const Real step = trusted_step(model);
+    const Real step = longest_allowed_step(model);
     if (!std::isfinite(step)) return;  // no body limits the step
     for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
         const Real turn = step * fastest_turn(colliders.script[c], colliders.keyframe);
@@ -286,7 +286,7 @@ WorldReport World::report() const {
                                       world.model.bodies.tetrahedron_blocks[b], world.model.nodes.position);
         report.near_inversion += ratios.near_inversion;
         report.inverted += ratios.inverted;
-        note_folds(world.model, b, report);
+        count_compressed_elements(world.model, b, report);
         if (ratios.smallest >= report.worst_volume_ratio) continue;
         report.worst_volume_ratio = ratios.smallest;
         report.worst_volume_body = world.model.body_records[b].name;

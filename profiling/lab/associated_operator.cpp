@@ -41,8 +41,8 @@ SweepChange AssociatedOperator::accelerated_sweep(Real relaxation) {
     SweepChange sum;
     for (Index i = 0; i < size(); ++i) {
         const Vec4 before = present[i];
-        sum.size += step(i, relaxation);
-        sum.against -= inner(i, present[i] - before, present[i] - previous[i]);
+        sum.squared_change += step(i, relaxation);
+        sum.reversal -= inner(i, present[i] - before, present[i] - previous[i]);
     }
     return sum;
 }

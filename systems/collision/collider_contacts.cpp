@@ -33,7 +33,7 @@ private:
             distance_to_collider_part(geometry_, motion_, second_local(candidate.feature), inputs.position[node]);
         asleep_until[c] = travel_base + nearest.distance - scale.contact_distance;
         least_ = std::min(least_, nearest.distance - scale.radii);
-        if (!(nearest.distance <= near)) return;
+        if (!(nearest.distance <= contact_limit)) return;
         const Vec3 velocity = velocity_at(motion_, nearest.point);
         if (!within_reach(nearest.distance, speed_against(velocity, std::array{node}))) return;
         add(candidate.feature, ContactKind::point_collider, {{node, node, node, node}, {1, 0, 0, 0}},
@@ -47,7 +47,7 @@ private:
         const Real flat = flat_reach(geometry_, end);
         const Real distance = edge_distance(geometry_, part, end[0], end[1]);
         asleep_until[c] = travel_base + std::max(distance - scale.contact_distance, flat);
-        if (!(distance <= near) || flat >= 0) {
+        if (!(distance <= contact_limit) || flat >= 0) {
             least_ = std::min(least_, std::max(distance - scale.radii, flat));
             return;
         }
@@ -78,7 +78,7 @@ private:
         const Real flat = flat_reach(geometry_, corner);
         asleep_until[c] = travel_base + std::max(contact.nearest - face_zone(scale), flat);
         least_ = std::min(least_, std::max({contact.nearest, contact.distance, flat}));
-        if (!contact.above || flat >= 0 || !(contact.distance <= near)) return;
+        if (!contact.above || flat >= 0 || !(contact.distance <= contact_limit)) return;
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;

@@ -23,9 +23,9 @@ public:
         const TouchingFeature feature = feature_of_candidate(candidate, node);
         // A rim has five points (collider_point). Only the candidate of point 0 is tested: this point is the furthest
         // behind the plane of the face, so its test covers the whole rim.
-        const bool has_rims = collider_point_follows(geometry_.shape, 0);
+        const bool has_rims = is_moving_rim_point(geometry_.shape, 0);
         const bool is_another =
-            feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.part_or_point);
+            feature.kind == Kind::face && has_rims && !is_moving_rim_point(geometry_.shape, feature.part_or_point);
         if (is_another || !can_move(std::span(node).first(feature.nodes()))) return false;
         const Real approach = greatest_approach(pose_, motion.h, feature);
         if (!(approach > slow_fraction * least)) return false;

@@ -66,7 +66,7 @@ private:
     /// step. If so, stores asleep_until with this bound and returns true. Otherwise returns false: the caller must
     /// compute the contact points, and store asleep_until with the sharper bound that follows from them.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !store_distance(c, bound); }
-    Real near_surface() const { return near - scale.radii; }
+    Real near_surface() const { return contact_limit - scale.radii; }
 
     void against_triangle(Index c, const Candidate& candidate) {
         const Index t = candidate.second;
@@ -89,12 +89,12 @@ private:
         const Vec3 normal = -(cylinder_.motion.rotation * on.normal);
         bool is_contact = region == CylinderRegion::end;
         if (region == CylinderRegion::side)
-            is_contact = vertex_holds_axis(inputs.surface, inputs.position, vertex,
-                                           cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
-                                           cylinder_.motion.rotation.col(2), scale);
+            is_contact = vertex_can_touch_axis(inputs.surface, inputs.position, vertex,
+                                               cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
+                                               cylinder_.motion.rotation.col(2), scale);
         if (region == CylinderRegion::rim)
-            is_contact = vertex_holds_place(inputs.surface, inputs.position, vertex,
-                                            std::max(std::abs(on.distance), scale.edge) * normal, scale);
+            is_contact = vertex_can_touch_point(inputs.surface, inputs.position, vertex,
+                                                std::max(std::abs(on.distance), scale.edge) * normal, scale);
         std::array<Real, 3> weight{};
         weight[k] = 1;
         if (is_contact) add_touch(candidate, static_cast<Index>(k), weight, normal, on.distance);
@@ -117,8 +117,8 @@ private:
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
                 region == CylinderRegion::end || (region == CylinderRegion::side && !parallel && straight_on);
-            if (!edge_faces(inputs.surface, inputs.position, inputs.surface.triangles.edge[candidate.second][k], normal,
-                            nearly_flat))
+            if (!edge_can_touch_along(inputs.surface, inputs.position,
+                                      inputs.surface.triangles.edge[candidate.second][k], normal, nearly_flat))
                 continue;
             std::array<Real, 3> weight{};
             weight[k] = 1 - touch.s;

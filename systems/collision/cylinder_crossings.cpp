@@ -115,7 +115,7 @@ private:
         find_touches(0, other, furthest + scale.shell);
         if (!(furthest > slow_fraction * distance_bound_at(0, other))) return false;
         if (!any_overlap() && add_end(candidate, other)) return true;
-        if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other.geometry)))
+        if (furthest > thin_fraction * std::min(half_thickness(cylinder_.geometry), half_thickness(other.geometry)))
             add_during_step(candidate, other);
         return true;
     }
@@ -296,7 +296,7 @@ private:
                 Vec3::Zero(), Vec3::Zero()};
     }
     /// Half of the smallest thickness of a shape [m].
-    static Real thickness(const ColliderGeometry& geometry) {
+    static Real half_thickness(const ColliderGeometry& geometry) {
         const Vec3& size = geometry.size;
         switch (geometry.shape) {
             case ColliderShape::box:

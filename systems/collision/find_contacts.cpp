@@ -19,12 +19,11 @@ namespace {
 
 // Amounts of work; the unit is the test of one candidate of two surfaces. candidates_per_block: work of one block. A
 // block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all must be tested.
-// candidates_worth_of_a_pair: work per pair, independent of its candidates. candidates_worth_of_one_at_collider: work
-// per candidate of a body and a collider; it is more than 1, because only candidates of two surfaces are tested in
-// groups of eight.
+// work_of_pair: work per pair, independent of its candidates. work_of_collider_candidate: work per candidate of a body
+// and a collider; it is more than 1, because only candidates of two surfaces are tested in groups of eight.
 constexpr std::int64_t candidates_per_block = 1536;
-constexpr Index candidates_worth_of_a_pair = 16;
-constexpr Index candidates_worth_of_one_at_collider = 5;
+constexpr Index work_of_pair = 16;
+constexpr Index work_of_collider_candidate = 5;
 
 constexpr std::size_t contacts_per_block = 256;
 // While the candidates of pair p are tested, the list of pair p + pairs_ahead is prefetched (prefetch_list).
@@ -42,13 +41,13 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
 
 /// Work of testing one candidate of a pair, in the unit of candidates_per_block.
 Index work_of_one(const PairTable& pairs, std::size_t p) {
-    return pairs.kind[p] == PairKind::collider ? candidates_worth_of_one_at_collider : 1;
+    return pairs.kind[p] == PairKind::collider ? work_of_collider_candidate : 1;
 }
 
 /// Work of testing all candidates of a pair, in the unit of candidates_per_block.
 std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     const Index count = pairs.test_count[p];
-    return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
+    return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + work_of_pair;
 }
 
 /// Marks pairs as idle if neither partner moves. Idle pairs are not tested: their last contacts remain valid, because

@@ -72,8 +72,8 @@ struct PairContacts : PairData {
     // T0 in contact_reach.h: features that are now at the distance d cannot meet while PairTable::travel_bound is below
     // T0 + d [m].
     const Real travel_base;
-    const Real near;        // features farther apart than this get no contact (near_distance) [m]
-    const bool held_apart;  // true: the surfaces cannot have passed through each other (is_held_apart)
+    const Real contact_limit;  // features farther apart than this get no contact (near_distance) [m]
+    const bool held_apart;     // true: the surfaces cannot have passed through each other (is_held_apart)
     std::span<Real> asleep_until;
     Column<ContactRow>& found;
 
@@ -83,7 +83,7 @@ struct PairContacts : PairData {
           settings(all_settings),
           h(step),
           travel_base(pair_travel_base(inputs, pairs, p)),
-          near(near_distance(scale, pairs.closing[p])),
+          contact_limit(near_distance(scale, pairs.closing[p])),
           held_apart(is_held_apart(settings, state, scale)),
           asleep_until(pairs.asleep_until[p].span()),
           found(rows) {}

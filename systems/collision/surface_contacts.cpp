@@ -48,8 +48,9 @@ private:
 
     void point_against_triangle(Index c, const CandidateNodes& node, Real speed) {
         const Candidate& candidate = candidates[c];
-        const PointTriangleContact contact = point_triangle_contact(
-            inputs.surface, inputs.position, inputs.position[node[0]], candidate.second, known_scale_, near, surfaces_);
+        const PointTriangleContact contact =
+            point_triangle_contact(inputs.surface, inputs.position, inputs.position[node[0]], candidate.second,
+                                   known_scale_, contact_limit, surfaces_);
         asleep_until[c] = travel_base + contact.sleep;
         const auto& corner = inputs.surface.triangles.node[candidate.second];
         if (contact.side == Side::none || (is_core(corner) && !core_is_touched(candidate, contact.closest))) return;
@@ -67,7 +68,7 @@ private:
     void edge_against_edge(Index c, const CandidateNodes& node, Real speed) {
         const Candidate& candidate = candidates[c];
         const EdgeEdgeContact contact = edge_edge_contact(inputs.surface, inputs.position, candidate.first,
-                                                          candidate.second, known_scale_, near, surfaces_);
+                                                          candidate.second, known_scale_, contact_limit, surfaces_);
         asleep_until[c] = travel_base + contact.sleep;
         if (!contact.touching || !within_reach(contact.distance, speed)) return;
         add(candidate.feature, ContactKind::edge_edge, stencil_of_edges(node, contact.closest),
@@ -104,8 +105,9 @@ private:
         if (own > 0) return between || own < other || !turned;
         const auto& [a, b, c] = inputs.surface.triangles.node[candidate.second];
         const Vec3& point = inputs.position[inputs.surface.vertices.node[candidate.first]];
-        return between && vertex_holds_axis(inputs.surface, inputs.position, candidate.first, closest.nearest - point,
-                                            inputs.position[b] - inputs.position[a], scale);
+        return between &&
+               vertex_can_touch_axis(inputs.surface, inputs.position, candidate.first, closest.nearest - point,
+                                     inputs.position[b] - inputs.position[a], scale);
     }
 
     /// `target`: point on the surface of the other body, behind which the core (axis or centre) of a round body lies.
@@ -186,12 +188,12 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
 /// Tests those candidates of a pair that can touch if both bodies move at their greatest speeds. Appends candidates
 /// whose surfaces can meet in this step to near_. Stores for each candidate the travel bound below which it needs no
 /// further test (asleep_until).
-void SurfaceContacts::test_pair(const AwakePair& awake) {
+void SurfaceContacts::test_pair(const CollectedPair& awake) {
     const Index p = awake.pair;
     const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],
                                                 pair_scale(inputs_, pairs_.kind[p], pairs_.first[p], pairs_.second[p]));
     const Real travel_base = pair_travel_base(inputs_, pairs_, p), close_until = travel_base - scale.edge_depth,
-               near = near_distance(scale, pairs_.closing[p]),
+               contact_limit = near_distance(scale, pairs_.closing[p]),
                meet_distance =
                    settings_.use_budgets ? (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction : infinity;
     Real* const asleep_until = pairs_.asleep_until[p].data();
@@ -202,7 +204,7 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
     for (std::size_t slot = awake.begin; slot < awake.end; ++slot) {
         const Real zone = features_of(candidate_[slot]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
         const Real distance = distance_[slot], gap = distance - scale.radii;
-        const bool is_close = distance <= std::max(near, zone) || !settings_.use_budgets;
+        const bool is_close = distance <= std::max(contact_limit, zone) || !settings_.use_budgets;
         asleep_until[row_[slot]] = distance + (is_close ? close_until : travel_base - zone);
         close[close_count] = meeting[meeting_count] = static_cast<std::uint16_t>(slot);
         close_count += is_close;

@@ -46,14 +46,14 @@ private:
         PerSlot<std::uint16_t> slot;
     };
     /// The collected candidates of one pair, in the order of its list.
-    struct AwakePair {
+    struct CollectedPair {
         Index pair;
         std::size_t begin, end;  // range of indices of these candidates among all collected candidates
     };
 
     void list_nodes();
     void measure_distances(FeaturePair kind);
-    void test_pair(const AwakePair& awake);
+    void test_pair(const CollectedPair& awake);
 
     const CollisionInputs& inputs_;
     const CollisionSettings& settings_;
@@ -64,7 +64,7 @@ private:
     Real smallest_distance_ = infinity;
 
     std::size_t count_ = 0, pair_count_ = 0;
-    PerSlot<AwakePair> pair_;       // pairs with at least one collected candidate
+    PerSlot<CollectedPair> pair_;   // pairs with at least one collected candidate
     PerSlot<Index> row_;            // index of the collected candidate in the list of its pair
     PerSlot<Candidate> candidate_;  // copy of the collected candidate
     PerSlot<CandidateNodes> node_;

@@ -134,14 +134,14 @@ private:
     }
 
     /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of
-    /// carried(), the mapped direction on one face, over the faces at the feature that are in the set. If this sum is
-    /// zero, it is the sum over all faces at the feature.
+    /// mapped_to_present(), the mapped direction on one face, over the faces at the feature that are in the set. If
+    /// this sum is zero, it is the sum over all faces at the feature.
     Vec3 present_direction(const Feature& touched) const {
         for (const bool in_set : {true, false}) {
             Vec3 sum = Vec3::Zero();
             for_each_triangle(touched, [&](Index t) {
                 if (!in_set || row_at(set_of_.triangle, t) == touched.set)
-                    sum += carried(sets_.direction[touched.set], t);
+                    sum += mapped_to_present(sets_.direction[touched.set], t);
             });
             if (!sum.isZero(0)) return sum;
         }
@@ -162,7 +162,7 @@ private:
     }
     /// Projects a direction of the rest shape onto face t, and maps the projection to the present shape by the
     /// deformation of the face. Returns zero for a face without area.
-    Vec3 carried(const Vec3& direction, Index t) const {
+    Vec3 mapped_to_present(const Vec3& direction, Index t) const {
         const auto& node = inputs_.surface.triangles.node[t];
         const auto side = [&](std::span<const Vec3> position, std::size_t k) {
             return Vec3(position[node[k]] - position[node[0]]);

@@ -83,7 +83,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
                                  const RoundSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
                                  Friction friction) {
     const std::size_t count = contacts.size();
-    const TouchPoints places{contacts.point.span(), contacts.distance.span()};
+    const TouchPoints touch_points{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // The contacts are divided into a limited number of parts, so that the sums over each part need no allocation. The
     // borders of the parts, and thus the bits of the sums, depend only on the number of contacts.
@@ -98,7 +98,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             const Stencil& stencil = contacts.stencil[i];
             const Vec3 after =
                 relative_velocity(stencil, contacts.surface_velocity[i], velocity_next) +
-                spins.nodes.rolling(stencil, i, normal, places, [&](std::size_t r) { return spins.after(r); });
+                spins.nodes.rolling(stencil, i, normal, touch_points, [&](std::size_t r) { return spins.after(r); });
             slip[i] = after - after.dot(normal) * normal;
             state[i] = state_of(contacts, i, friction);
             part.max_penetration = std::max(part.max_penetration, -contacts.distance[i]);
@@ -108,7 +108,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             if (state[i] == ContactState::open) continue;
             const Vec3 before =
                 relative_velocity(stencil, contacts.surface_velocity[i], velocity) +
-                spins.nodes.rolling(stencil, i, normal, places, [&](std::size_t r) { return spins.before(r); });
+                spins.nodes.rolling(stencil, i, normal, touch_points, [&](std::size_t r) { return spins.before(r); });
             part.dissipated -= 0.5 * impulse.dot(before + after);
             add_outer(stencil, contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next, part);
         }

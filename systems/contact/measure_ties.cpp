@@ -11,7 +11,7 @@ namespace {
 
 /// Velocity of a tied point before the step plus its velocity after the step [m/s]. On an explicit body the point moves
 /// like `node`; on a rigid or implicit body the rotation of the frame about `node` is added.
-Vec3 twice_mean(const TieWorkInputs& motion, Index node, const Vec3& point) {
+Vec3 velocity_sum(const TieWorkInputs& motion, Index node, const Vec3& point) {
     const auto n = static_cast<std::size_t>(node);
     Vec3 sum = motion.velocity[n] + motion.velocity_next[n];
     const Index frame = motion.spins.nodes.row(node);
@@ -36,10 +36,10 @@ Vec3 impulse_of(const CableBlockTable& blocks, const CableBlock& tie) {
 
 /// Divides the impulse of tie `t` among its nodes in proportion to their masses. If the force exceeds the limit, all
 /// nodes break off at the time `end` [s], and the result is true.
-bool store_mean(const Vec3& impulse, const TiedMeans& means, std::size_t t, Real end, TieTable& ties) {
-    const Index first = means.body_nodes[static_cast<std::size_t>(ties.first[t])].begin;
+bool store_mean(const Vec3& impulse, const BallTies& ball_ties, std::size_t t, Real end, TieTable& ties) {
+    const Index first = ball_ties.body_nodes[static_cast<std::size_t>(ties.first[t])].begin;
     Index k = ties.nodes[t].begin;
-    for_each_share(rows_of(ties.node.span(), ties.nodes[t]), first, means.mass,
+    for_each_share(rows_of(ties.node.span(), ties.nodes[t]), first, ball_ties.mass,
                    [&](Index, Real share) { ties.impulse[k++] = share * impulse; });
     const bool breaks = impulse.norm() > ties.break_force[t] * ties.step[t];
     if (breaks) std::ranges::fill(rows_of(ties.broken, ties.nodes[t]), end);
@@ -60,7 +60,7 @@ TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& bl
                 continue;
             sum.impulse += weight * impulse;
             sum.work +=
-                weight * impulse.dot(twice_mean(motion, stencil.node[a], point ? *point : motion.position[node])) / 2;
+                weight * impulse.dot(velocity_sum(motion, stencil.node[a], point ? *point : motion.position[node])) / 2;
         }
     };
     rows.impulse.resize(rows.size());
@@ -78,10 +78,10 @@ TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& bl
     return sum;
 }
 
-Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties) {
+Index store_ties(const TieRowTable& rows, const BallTies& ball_ties, const TieTimes& times, TieTable& ties) {
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (rows.rests[t]) continue;
-        ties.step[t] = acts_for_whole_step(ties, means.body_implicit, t) ? times.h : times.kick;
+        ties.step[t] = acts_for_whole_step(ties, ball_ties.body_implicit, t) ? times.h : times.kick;
         std::ranges::fill(rows_of(ties.impulse, ties.nodes[t]), Vec3::Zero());
     }
     Index released = 0;
@@ -93,10 +93,10 @@ Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes
         const auto is_broken = [](Real time) { return time < infinity; };
         released += std::ranges::all_of(rows_of(ties.broken, ties.nodes[t]), is_broken);
     }
-    for (const CableBlock& block : means.blocks.solved())
+    for (const CableBlock& block : ball_ties.blocks.solved())
         if (block.is_tie)
-            released += store_mean(impulse_of(means.blocks, block), means, static_cast<std::size_t>(block.cable),
-                                   times.end, ties);
+            released += store_mean(impulse_of(ball_ties.blocks, block), ball_ties,
+                                   static_cast<std::size_t>(block.cable), times.end, ties);
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (rows.rests[t]) continue;
         Vec3 sum = Vec3::Zero();

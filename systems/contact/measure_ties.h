@@ -48,13 +48,13 @@ TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& bl
 
 /// Data of the solved ties of the kind `ball`, whose impulse acts on the mean of their nodes. `mass` serves to divide
 /// the impulse among the nodes.
-struct TiedMeans {
+struct BallTies {
     const CableBlockTable& blocks;
     std::span<const Range> body_nodes, body_implicit;  // BodyTable
     std::span<const Real> mass;                        // by node [kg]
 
-    static TiedMeans bind(const Binder& binder, const CableBlockTable& blocks, const BodyTable& body,
-                          const NodeTable& node) {
+    static BallTies bind(const Binder& binder, const CableBlockTable& blocks, const BodyTable& body,
+                         const NodeTable& node) {
         return {.blocks = binder.read(blocks),
                 .body_nodes = binder.read(body.nodes),
                 .body_implicit = binder.read(body.implicit),
@@ -71,6 +71,6 @@ struct TieTimes {
 /// Stores the impulses and the largest forces of an accepted step. A node breaks off if its force exceeds the limit of
 /// its tie; a tie of the kind `ball` breaks as a whole. Returns the number of ties that have lost their last node in
 /// this step.
-Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties);
+Index store_ties(const TieRowTable& rows, const BallTies& ball_ties, const TieTimes& times, TieTable& ties);
 
 }  // namespace skerry

@@ -76,14 +76,14 @@ struct RigidNodes {
     /// sum of the weights of its nodes (1 for the first partner, -1 for the second). For a sphere or capsule the point
     /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder the point is the
     /// centre. `weight`: the sum of the weights, used only for cylinders.
-    Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
-                     const TouchPoints& places) const {
+    Vec3 core_arm(Index node, Real weight, std::size_t contact, const Vec3& normal,
+                  const TouchPoints& touch_points) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
-        return weight * (places.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
+        return weight * (touch_points.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
     }
     /// Part of the relative velocity at a contact that stems from the spins of round bodies [m/s]. `spin(r)`: spin of
     /// row r of RigidBodyTable [rad/s].
-    Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPoints& places,
+    Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPoints& touch_points,
                  auto&& spin) const {
         Vec3 sum = Vec3::Zero();
         if (round_radius.empty()) return sum;
@@ -93,7 +93,7 @@ struct RigidNodes {
             if (weight == 0 || !(radius(node) > 0)) continue;
             const Vec3 turning = spin(static_cast<std::size_t>(row(node)));
             if (is_cylinder(node))
-                sum += turning.cross(beside_core(node, weight, contact, normal, places));
+                sum += turning.cross(core_arm(node, weight, contact, normal, touch_points));
             else
                 sum -= std::abs(weight) * radius(node) * turning.cross(normal);
         }

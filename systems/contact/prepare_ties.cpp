@@ -86,7 +86,7 @@ Vec3 turning_offset(const TieInputs& ties, std::size_t t, std::size_t k, Real h)
 }
 
 /// Mean velocity over the step of a point that moves with a collider [m/s]
-Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
+Vec3 collider_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
     const Vec3 arm = point - motion.position;
     return motion.velocity + (rotation_matrix(h * motion.angular_velocity) * arm - arm) / h;
 }
@@ -150,7 +150,8 @@ public:
         const FrameMotion second_motion = frame_motion(ties_, frame, point(), no_index);
         Vec3 velocity = Vec3::Zero();
         if (tie.collider[t_] != no_index)
-            velocity = led_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], target_.point, step_.h);
+            velocity =
+                collider_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], target_.point, step_.h);
         else if (ties_.deforms(second) && frame == no_index)
             velocity = turning_offset(ties_, t_, k_, step_.h);
         else if (!ties_.deforms(second) && frame != no_index && stencil_.weight[1] == 0)

@@ -14,16 +14,17 @@ constexpr std::size_t loaded_nodes_per_block = 4096;
 
 /// Mean scales of a load in this step.
 struct MeanScales {
-    Real usual, implicit;  // `usual`: for explicit and rigid bodies; `implicit`: for implicit bodies
+    Real explicit_scale;  // for explicit and rigid bodies
+    Real implicit_scale;  // for implicit bodies
 
     MeanScales(const LoadInputs& loads, std::size_t load) {
         const std::span<const TimeKey> keys = rows_of(loads.key, loads.scale_keys[load]);
         const ForceIntervals& during = loads.intervals;
-        usual = mean_value(keys, during.begin, during.length);
-        implicit = mean_value(keys, during.begin_implicit, during.length_implicit);
+        explicit_scale = mean_value(keys, during.begin, during.length);
+        implicit_scale = mean_value(keys, during.begin_implicit, during.length_implicit);
     }
     Real at(const LoadInputs& loads, std::size_t body) const {
-        return loads.body_implicit[body].size() > 0 ? implicit : usual;
+        return loads.body_implicit[body].size() > 0 ? implicit_scale : explicit_scale;
     }
 };
 

@@ -53,7 +53,7 @@ Real CavityInputs::volume_part(std::size_t c, std::size_t f) const {
 }
 
 Real CavityInputs::volume(std::size_t c) const {
-    Real sum = closed[c] ? 0 : swept_volume[c];
+    Real sum = closed[c] ? 0 : open_volume[c];
     for (auto f = static_cast<std::size_t>(faces[c].begin); f < static_cast<std::size_t>(faces[c].end); ++f)
         sum += volume_part(c, f);
     return sum;
@@ -113,7 +113,7 @@ bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real no
                 return part;
             },
             [](Real a, Real b) { return a + b; });
-        out.volume_now[c] = cavities.closed[c] ? sum : cavities.swept_volume[c] + sum;
+        out.volume_now[c] = cavities.closed[c] ? sum : cavities.open_volume[c] + sum;
         const CavityLaw law = cavities.law[c];
         const Real amount = law == CavityLaw::pressure ? mean_value(cavities.keys_of(c), now - lag, kick)
                             : law == CavityLaw::gas    ? cavities.mass[c]

@@ -27,10 +27,10 @@ struct CavityInputs {
     std::span<const Range> keys;
     std::span<const TimeKey> key;
     std::span<const CavityFluid> fluid;
-    std::span<const Real> mass;          // mass of the gas [kg]
-    std::span<const Real> swept_volume;  // CavityTable::volume [m^3]
-    std::span<const Range> body_nodes;   // BodyTable
-    std::span<const Vec3> position;      // by node [m]
+    std::span<const Real> mass;         // mass of the gas [kg]
+    std::span<const Real> open_volume;  // CavityTable::volume [m^3]
+    std::span<const Range> body_nodes;  // BodyTable
+    std::span<const Vec3> position;     // by node [m]
 
     static CavityInputs bind(const Binder& binder, const CavityTable& cavity, const BodyTable& body,
                              const NodeTable& node) {
@@ -44,7 +44,7 @@ struct CavityInputs {
                 .key = binder.read(cavity.key),
                 .fluid = binder.read(cavity.fluid),
                 .mass = binder.read(cavity.mass),
-                .swept_volume = binder.read(cavity.volume),
+                .open_volume = binder.read(cavity.volume),
                 .body_nodes = binder.read(body.nodes),
                 .position = binder.read(node.position)};
     }

@@ -56,7 +56,7 @@ template <class T>
 struct PointTriangleLanes {
     T distance_squared;  // squared distance; NaN if a coordinate is NaN [m^2]
     // Height of the point above the plane, times twice the area; positive on the side of the normal [m^3].
-    T height;
+    T scaled_height;
 };
 
 /// Distances of the points p from the triangles abc. A triangle whose smallest height is below 1e-6 of its longest edge

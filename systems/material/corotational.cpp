@@ -19,11 +19,11 @@ Real Corotational::stiffness_bound(const MaterialConstants& material, const Mat3
     const Real mu = material.shear_modulus, la = material.lame_lambda;
     Vec3 s = Stretches(F).stretch;
     std::ranges::sort(s, std::greater<Real>());
-    const Real twist = la * (s.sum() - 3) - 2 * mu;
+    const Real rotation_term = la * (s.sum() - 3) - 2 * mu;
     // With the rotation R nearest to F and the stretches s, dP/dF has the eigenvalues 2 mu + 3 la for a change of F
-    // along R, 2 mu + twist * 2/(s_i + s_j) for the three changes of F that rotate R, and 2 mu for all others.
+    // along R, 2 mu + rotation_term * 2/(s_i + s_j) for the three changes of F that rotate R, and 2 mu for all others.
     Real bound = 2 * mu + std::max(Real{0}, 3 * la);
-    if (twist > 0) bound = std::max(bound, 2 * mu + twist * 2 / std::max(s[1] + s[2], Real{0}));
+    if (rotation_term > 0) bound = std::max(bound, 2 * mu + rotation_term * 2 / std::max(s[1] + s[2], Real{0}));
     return bound;
 }
 
@@ -32,9 +32,10 @@ Tangent Corotational::tangent(const MaterialConstants& material, const Mat3& F) 
     const Real mu = material.shear_modulus, la = material.lame_lambda;
     const Stretches frames(F);
     const Vec3& s = frames.stretch;
-    const Real turning = la * (s.sum() - 3) - 2 * mu;
+    const Real rotation_term = la * (s.sum() - 3) - 2 * mu;
     Vec3 twist;
-    for (Index k = 0; k < 3; ++k) twist[k] = 2 * mu + 2 * turning / std::max(s[(k + 1) % 3] + s[(k + 2) % 3], least);
+    for (Index k = 0; k < 3; ++k)
+        twist[k] = 2 * mu + 2 * rotation_term / std::max(s[(k + 1) % 3] + s[(k + 2) % 3], least);
     return without_softening(frames, 2 * mu * Mat3::Identity() + Mat3::Constant(la), Vec3::Constant(2 * mu), twist);
 }
 

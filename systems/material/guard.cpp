@@ -10,7 +10,7 @@ namespace skerry {
 namespace {
 
 Real missing_volume(const Mat3& F) {
-    return std::max(Guard::intact - F.determinant(), Real(0));
+    return std::max(Guard::barrier_ratio - F.determinant(), Real(0));
 }
 
 Mat3 cofactors(const Mat3& F) {

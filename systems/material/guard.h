@@ -15,7 +15,8 @@ struct Guard {
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 36;
 
-    static constexpr Real intact = 0.5;  // J0: ratio of present volume to rest volume below which the barrier acts
+    /// J0: ratio of present volume to rest volume below which the barrier acts.
+    static constexpr Real barrier_ratio = 0.5;
 
     /// Elastic energy per rest volume: k/2 (J0 - J)^2 if J = det F is below J0, else zero [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
@@ -80,7 +81,7 @@ struct Guard {
 private:
     template <class T>
     static T missing_of(const T& J) {
-        const T missing = intact - J;
+        const T missing = barrier_ratio - J;
         return missing < 0.0 ? T{} : missing;  // the comparison is false for NaN, so the result is NaN if J is NaN
     }
 };

@@ -150,7 +150,7 @@ TEST_CASE("the impulse of an axis solves the law of all its forces", "[unit][joi
     for (int draw = 0; draw < 20000; ++draw) {
         AxisBounds axis;
         axis.target = any(random);
-        axis.most = coin(random) * std::abs(any(random));
+        axis.max_impulse = coin(random) * std::abs(any(random));
         axis.friction = coin(random) * std::abs(any(random));
         axis.pull = coin(random) * any(random);
         axis.drag = coin(random) * std::abs(any(random));
@@ -171,7 +171,7 @@ TEST_CASE("the impulse of an axis solves the law of all its forces", "[unit][joi
         INFO("draw " << draw);
         const bool at_limit = u < axis.low + rounding || u > axis.high - rounding;
         if (!at_limit) {
-            CHECK(is_drive(parts.motor, axis.target, axis.most));
+            CHECK(is_drive(parts.motor, axis.target, axis.max_impulse));
             CHECK(is_drive(friction, 0, axis.friction));
             CHECK(limit == Approx(0).margin(1e-9));
         } else {

@@ -72,14 +72,14 @@ public:
 
     // Binary numbers.
     // --------------------------------------------------------------------------------------------------------------
-    void set_foreign_bytes(bool foreign) { foreign_bytes_ = foreign; }
+    void set_swapped_bytes(bool swapped) { swapped_bytes_ = swapped; }
     template <class T>
     T binary(const char* field) {
         T value;
         begin_binary(sizeof(T), field);
         char bytes[sizeof(T)];
         for (std::size_t i = 0; i < sizeof(T); ++i)
-            bytes[i] = data_[position_ + (foreign_bytes_ ? sizeof(T) - 1 - i : i)];
+            bytes[i] = data_[position_ + (swapped_bytes_ ? sizeof(T) - 1 - i : i)];
         std::memcpy(&value, bytes, sizeof(T));
         position_ += sizeof(T);
         return value;
@@ -124,7 +124,7 @@ private:
     std::size_t position_ = 0;
     std::size_t start_ = 0;  // position at which the last item read begins, for error messages
     bool last_was_binary_ = false;
-    bool foreign_bytes_ = false;
+    bool swapped_bytes_ = false;
     bool binary_ = false;
     std::vector<std::string_view> words_;
 };

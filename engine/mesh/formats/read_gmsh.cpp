@@ -64,7 +64,7 @@ std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
                        GmshMesh& mesh) {
-    std::vector<Index>& rows = mesh.element_rows;
+    std::vector<Index>& rows = mesh.element_nodes;
     rows.clear();
     for (const std::int64_t number : node_numbers) rows.push_back(numbers.row(number, reader));
     if (type == 11) std::swap(rows[8], rows[9]);  // Gmsh lists the middle of edge 23 before that of edge 13
@@ -135,7 +135,7 @@ Header read_header(FileReader& reader) {
         if (endian_mark != 1 && endian_mark != 0x01000000)
             reader.complain("byte order", std::to_string(endian_mark), "the integer 1, big-endian or little-endian",
                             "the file is damaged; export it again");
-        reader.set_foreign_bytes(endian_mark != 1);
+        reader.set_swapped_bytes(endian_mark != 1);
     }
     if (const std::string_view end = reader.filled_line("$EndMeshFormat"); end != "$EndMeshFormat")
         reader.complain({}, in_quotes(end), "$EndMeshFormat");

@@ -28,7 +28,7 @@ struct GmshMesh : RawMesh {
     // Names of the views (data on elements) that have only the values 0 and 1. Each name has the list of the numbers of
     // those elements that have the value 1.
     std::map<std::string, std::vector<std::int64_t>> flagged;
-    std::vector<Index> element_rows;  // nodes of the element that is being read
+    std::vector<Index> element_nodes;  // nodes of the element that is being read
 };
 
 /// Reads the section $PhysicalNames, which is text in every file.

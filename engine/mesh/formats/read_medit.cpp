@@ -54,7 +54,7 @@ public:
         const bool little = bytes.starts_with(std::string_view("\1\0\0\0", 4));
         binary_ = little || bytes.starts_with(std::string_view("\0\0\0\1", 4));
         reader_.set_binary(binary_);
-        reader_.set_foreign_bytes(little != (std::endian::native == std::endian::little));
+        reader_.set_swapped_bytes(little != (std::endian::native == std::endian::little));
         binary_ ? read_binary() : read_text();
         reader_.set_section({});
         if (!labelled_) mesh_.label.clear();

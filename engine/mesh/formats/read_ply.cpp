@@ -75,7 +75,7 @@ private:
             reader_.complain("format", in_quotes(name), "ascii, binary_little_endian or binary_big_endian");
         binary_ = name != "ascii";
         reader_.set_binary(binary_);
-        reader_.set_foreign_bytes((name == "binary_little_endian") != (std::endian::native == std::endian::little));
+        reader_.set_swapped_bytes((name == "binary_little_endian") != (std::endian::native == std::endian::little));
     }
 
     NumberType type_of(std::string_view name) const {

@@ -17,7 +17,7 @@ void add_triangle(const std::array<Vec3, 3>& corners, SurfaceMesh& surface) {
 constexpr std::size_t header_bytes = 80, triangle_bytes = 50;
 
 void read_binary(FileReader& reader, SurfaceMesh& surface) {
-    reader.set_foreign_bytes(std::endian::native == std::endian::big);  // STL files are little-endian
+    reader.set_swapped_bytes(std::endian::native == std::endian::big);  // STL files are little-endian
     reader.skip_bytes(header_bytes, "header");
     const std::size_t count = reader.checked_count(reader.binary<std::uint32_t>("count"), triangle_bytes, "count");
     for (std::size_t i = 0; i < count; ++i) {

@@ -43,7 +43,7 @@ private:
         if (format != "ASCII" && format != "BINARY") reader_.complain("format", in_quotes(format), "ASCII or BINARY");
         binary_ = format == "BINARY";
         reader_.set_binary(binary_);
-        reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // binary VTK files are big-endian
+        reader_.set_swapped_bytes(std::endian::native == std::endian::little);  // binary VTK files are big-endian
         const std::string_view key = reader_.word("DATASET");
         if (key != "DATASET") reader_.complain({}, in_quotes(key), "DATASET");
         dataset_ = reader_.word("the type of the data set");

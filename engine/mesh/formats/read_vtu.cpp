@@ -75,7 +75,7 @@ private:
         if (!packer.empty() && packer != "vtkZLibDataCompressor")
             complain(file, "compressor", in_quotes(packer), "vtkZLibDataCompressor, or no compressor",
                      "save the mesh without compression, or with zlib");
-        form_.foreign_bytes = (order == "LittleEndian") != (std::endian::native == std::endian::little);
+        form_.swapped_bytes = (order == "LittleEndian") != (std::endian::native == std::endian::little);
         form_.wide_header = header == "UInt64";
         form_.compressed = !packer.empty();
     }

@@ -110,10 +110,10 @@ private:
 };
 
 template <class T>
-T number_from(const char* bytes, bool foreign) {
+T number_from(const char* bytes, bool swapped) {
     std::array<char, sizeof(T)> own;
     std::copy_n(bytes, sizeof(T), own.begin());
-    if (foreign) std::ranges::reverse(own);
+    if (swapped) std::ranges::reverse(own);
     T value;
     std::memcpy(&value, own.data(), sizeof(T));
     return value;
@@ -121,8 +121,8 @@ T number_from(const char* bytes, bool foreign) {
 
 std::uint64_t read_header(ByteSource& source, const VtkXmlForm& form) {
     const std::string bytes = source.take(form.wide_header ? 8 : 4);
-    return form.wide_header ? number_from<std::uint64_t>(bytes.data(), form.foreign_bytes)
-                            : number_from<std::uint32_t>(bytes.data(), form.foreign_bytes);
+    return form.wide_header ? number_from<std::uint64_t>(bytes.data(), form.swapped_bytes)
+                            : number_from<std::uint32_t>(bytes.data(), form.swapped_bytes);
 }
 
 /// Reads and decompresses the blocks of an array. A header precedes them: number of blocks, decompressed size of a
@@ -184,10 +184,10 @@ std::string read_bytes(const VtkXmlArray& array, const VtkXmlForm& form, std::si
 }
 
 template <class Number, class T>
-std::vector<Number> converted(const std::string& bytes, bool foreign) {
+std::vector<Number> converted(const std::string& bytes, bool swapped) {
     std::vector<Number> numbers(bytes.size() / sizeof(T));
     for (std::size_t i = 0; i < numbers.size(); ++i)
-        numbers[i] = static_cast<Number>(number_from<T>(bytes.data() + i * sizeof(T), foreign));
+        numbers[i] = static_cast<Number>(number_from<T>(bytes.data() + i * sizeof(T), swapped));
     return numbers;
 }
 
@@ -237,7 +237,7 @@ std::vector<Number> numbers_of(const VtkXmlArray& array, const VtkXmlForm& form,
                         std::is_floating_point_v<Number> ? "Float32, Float64 or an integer type such as Int32"
                                                          : "an integer type such as Int32 or Int64");
     if (array.tag.value_of("format", "ascii") == "ascii") return read_text<Number>(array, count, field, reader);
-    return type->convert(read_bytes(array, form, count * type->size, field, reader), form.foreign_bytes);
+    return type->convert(read_bytes(array, form, count * type->size, field, reader), form.swapped_bytes);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct VtkXmlArray {
 /// Encoding of all arrays of a file. The attributes of <VTKFile> and <AppendedData> define it.
 struct VtkXmlForm {
     bool wide_header = false;    // headers (sizes before the data of an array) have 64 instead of 32 bits
-    bool foreign_bytes = false;  // byte order of the file differs from the order of this machine
+    bool swapped_bytes = false;  // byte order of the file differs from the order of this machine
     bool compressed = false;
     bool has_appended = false, appended_base64 = false;
     std::string_view appended;  // bytes after the "_" of <AppendedData>; if they are raw: up to the end of the file

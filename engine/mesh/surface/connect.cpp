@@ -18,7 +18,8 @@ namespace {
 /// at each edge. Divides the triangles for which `given` is true into patches that are connected by edges. Returns true
 /// for all triangles of a patch if one of its edges has an odd number of triangles of the surface, not counting
 /// `dropped` ones.
-std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
+std::vector<bool> patches_with_odd_edge(Triangles triangles, const std::vector<bool>& given,
+                                        const std::vector<bool>& dropped) {
     UnionFind patches;
     patches.start(triangles.size());
     std::vector<Index> at_odd_edge;
@@ -48,14 +49,14 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     std::vector<std::array<Index, 3>>& triangles = report.cleaned.triangles;
     // Each triangle has two entries: one for its present and one for its opposite orientation. Entries of neighbours
     // whose orientations agree are joined. A patch is one-sided if both entries of a triangle become joined.
-    UnionFind fitting;
-    fitting.start(2 * triangles.size());
+    UnionFind orientations;
+    orientations.start(2 * triangles.size());
     for_each_edge(sides, [&](std::span<const Side> edge) {
         if (edge.size() != 2) return;
         const Index a = 2 * edge[0].triangle(), b = 2 * edge[1].triangle();
         const Index same = edge[0].rises() == edge[1].rises() ? 1 : 0;
-        fitting.join(a, b + same);
-        fitting.join(a + 1, b + 1 - same);
+        orientations.join(a, b + same);
+        orientations.join(a + 1, b + 1 - same);
     });
     struct Patch {
         Index triangles = 0, opposite = 0;  // number of triangles, and of those oriented opposite to the first one
@@ -63,7 +64,7 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     std::vector<Patch> patches(triangles.size());  // indexed by the first triangle of the patch
     const auto roots_of = [&](std::size_t t) {
         const auto row = static_cast<Index>(2 * t);
-        return std::pair(fitting.root(row), fitting.root(row + 1));
+        return std::pair(orientations.root(row), orientations.root(row + 1));
     };
     const auto patch_of = [&](std::pair<Index, Index> roots) -> Patch& {
         return patches[static_cast<std::size_t>(std::min(roots.first, roots.second) / 2)];
@@ -188,7 +189,7 @@ std::vector<Index> drop_duplicates(SurfaceReport& report) {
         opposite[triangle] = !dropped[triangle];
     }
     if (std::ranges::count(opposite, true) > 0) {
-        const std::vector<bool> spurious = with_odd_edge(report.cleaned.triangles, opposite, dropped);
+        const std::vector<bool> spurious = patches_with_odd_edge(report.cleaned.triangles, opposite, dropped);
         for (std::size_t t = 0; t < dropped.size(); ++t) dropped[t] = dropped[t] || spurious[t];
     }
     std::vector<Index> repeated_by(entries.size(), no_index);

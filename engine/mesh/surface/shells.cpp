@@ -64,19 +64,19 @@ SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
 
 /// Returns the largest distance of the nodes of the second shell from the first one, or nullopt if the second shell
 /// does not repeat the first one within `distance` [m]. Unless `keep_walls`, the limit for shells of the same
-/// orientation is larger: see `close`.
+/// orientation is larger: see `relative_limit`.
 std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSize> sizes,
                             std::span<const std::vector<Index>> rows, std::size_t first, std::size_t second,
                             Real distance, bool keep_walls) {
     // Upper limit of the distance between two shells of the same orientation, divided by their diagonal, at which they
     // count as one. The narrow space between them is hardly meant as a region.
-    constexpr Real close = 1e-3;
+    constexpr Real relative_limit = 1e-3;
     const ShellSize &a = sizes[first], &b = sizes[second];
     const bool closed = report.shells[first].closed;
     const bool alike = closed == report.shells[second].closed && (!closed || (a.volume > 0) == (b.volume > 0));
-    const Real limit = std::max(distance, alike && !keep_walls ? close * a.diagonal() : 0);
+    const Real limit = std::max(distance, alike && !keep_walls ? relative_limit * a.diagonal() : 0);
     if ((a.box.lower - b.box.lower).norm() > 2 * limit || (a.box.upper - b.box.upper).norm() > 2 * limit ||
-        std::abs(a.area - b.area) > 10 * close * a.area)
+        std::abs(a.area - b.area) > 10 * relative_limit * a.area)
         return {};
     const SurfaceMesh part = part_of(report.cleaned, rows[second]);
     const TriangleTree tree(part_of(report.cleaned, rows[first]));

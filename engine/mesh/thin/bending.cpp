@@ -107,8 +107,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
     // Several columns of a part may cross a tetrahedron. The first of these columns defines the neutral axis and the
     // directions of bending in the tetrahedron.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
-    // bending energy of each column: `exact` by the theory of beams, `found` with the elements [J]
-    std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);
+    // bending energy of each column: `exact` by the theory of beams, `element_energy` with the elements [J]
+    std::vector<Real> exact(columns.size(), 0), element_energy(columns.size(), 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const BentColumn& bent = columns[c];
         const ThinColumn& column = *bent.column;
@@ -144,7 +144,7 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
                 gradient += bending.displacement(mesh.nodes[static_cast<std::size_t>(elements.node[k])]) *
                             elements.gradient[k].transpose();
             const Real volume = skerry::six_volumes(nearby.tetrahedra[row], mesh.nodes) / 6 / covered[row][kind];
-            found[bending.column] += volume * energy_density(gradient, bending, elements.part[e]);
+            element_energy[bending.column] += volume * energy_density(gradient, bending, elements.part[e]);
         }
     });
 
@@ -155,7 +155,7 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!(exact[c] > 0)) continue;
         energy[columns[c].part] += exact[c];
-        compliance[columns[c].part] += exact[c] * exact[c] / found[c];
+        compliance[columns[c].part] += exact[c] * exact[c] / element_energy[c];
     }
     std::vector<Real> stiffness(part_count, 1);
     for (std::size_t p = 0; p < part_count; ++p)

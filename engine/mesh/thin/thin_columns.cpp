@@ -17,7 +17,7 @@ constexpr Real thickest = 2;
 // Lower limit of the cosine of the angle between the ray and the outer normal of the triangle through which the ray
 // leaves (18 degrees). At a larger angle the two sides form a wedge, such as the rim of a fin, which is not treated as
 // thin.
-constexpr Real opposite = 0.95;
+constexpr Real least_exit_cosine = 0.95;
 
 /// The face of a tetrahedron opposite to `corner` (0 to 3).
 struct Face {
@@ -101,7 +101,7 @@ public:
             if (is_boundary(exit->first)) {
                 column.last = nodes_of(exit->first);
                 column.layers = end / mean_extent(column);
-                const bool thin = outer_normal(exit->first).normalized().dot(column.direction) > opposite;
+                const bool thin = outer_normal(exit->first).normalized().dot(column.direction) > least_exit_cosine;
                 return thin ? std::optional(std::move(column)) : std::nullopt;
             }
             face = beyond(exit->first);

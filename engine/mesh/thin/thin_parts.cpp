@@ -16,13 +16,13 @@ namespace {
 
 // Lower limit of the ratio of length to thickness of a part. Shorter parts carry loads by shear and compression more
 // than by bending.
-constexpr Real slender = 4;
+constexpr Real least_slenderness = 4;
 // Lower limit of the volume of a part, as a fraction of the volume of the mesh. It excludes fins and tails of animals
 // (up to 2 %) and includes the leg of a table (5 %).
 constexpr Real noticeable_volume = 0.03;
 // Lower limit of the cosine of the angle between the normals of neighbouring triangles of a part. At a sharper edge
 // another side of the body begins, which is a part of its own.
-constexpr Real smooth_edge = 0.7;
+constexpr Real least_edge_cosine = 0.7;
 // Upper limit of the number of columns of a part for which the energy is computed. These columns are spread evenly.
 constexpr std::size_t most_columns = 500;
 
@@ -44,7 +44,7 @@ std::vector<std::vector<const ThinColumn*>> connected(std::span<const ThinColumn
         if (sides[s].first != sides[s - 1].first) continue;
         const ThinColumn &one = columns[static_cast<std::size_t>(sides[s - 1].second)],
                          &other = columns[static_cast<std::size_t>(sides[s].second)];
-        if (one.direction.dot(other.direction) > smooth_edge) parts.join(sides[s - 1].second, sides[s].second);
+        if (one.direction.dot(other.direction) > least_edge_cosine) parts.join(sides[s - 1].second, sides[s].second);
     }
     std::ranges::sort(triangles);
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -115,7 +115,7 @@ std::vector<ThinPart> thin_parts(const Mesh& mesh, std::span<const std::array<In
     for (const std::vector<const ThinColumn*>& members : connected(columns)) {
         Vec3 axis;
         const ThinPart part = measure(mesh, members, axis);
-        if (part.length < slender * part.thickness || part.volume < noticeable_volume * volume) continue;
+        if (part.length < least_slenderness * part.thickness || part.volume < noticeable_volume * volume) continue;
         const std::size_t stride = (members.size() + most_columns - 1) / most_columns;
         for (std::size_t c = 0; c < members.size(); c += stride)
             bent.push_back({members[c], tangent_of(*members[c], axis), parts.size()});

@@ -54,7 +54,7 @@ std::vector<Option> factor_options(const StudyFamily& family, Real StudyVariant:
     return options;
 }
 
-bool counts(const MeasuredQuantity& quantity) {
+bool has_usable_error(const MeasuredQuantity& quantity) {
     const StudyQuantity& r = quantity.result;
     return (r.verdict == StudyVerdict::known || r.verdict == StudyVerdict::irregular) && std::isfinite(r.error) &&
            r.scale > 0;
@@ -83,7 +83,7 @@ Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> 
     settings.variant.tolerance = tolerance.variant.tolerance;
     settings.cpu_seconds = family.scene->cpu_seconds * mesh.cost * step.cost * tolerance.cost;
     for (const MeasuredQuantity& quantity : quantities) {
-        if (!counts(quantity)) continue;
+        if (!has_usable_error(quantity)) continue;
         Real error = error_with(quantity, settings.variant) / quantity.result.scale;
         if (std::isnan(error)) error = infinity;
         ++found.counted;

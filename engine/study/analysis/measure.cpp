@@ -14,7 +14,7 @@ namespace {
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
 // Fraction of the error bar. A part of the error (from the mesh, the steps or the contacts) that does not decrease
 // regularly from run to run is ignored below this fraction.
-constexpr Real matters = 0.2;
+constexpr Real least_share_of_bar = 0.2;
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -147,7 +147,7 @@ void combine(MeasuredQuantity& quantity) {
         {&quantity.mesh, r.mesh}, {&quantity.step, r.step}, {&quantity.contact, r.contact}};
     for (const auto& [convergence, error] : parts_of_error) {
         if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
-        if (convergence->irregular() && error <= matters * r.error) {
+        if (convergence->irregular() && error <= least_share_of_bar * r.error) {
             r.best_error += error;  // this part is not extrapolated; its whole error is added
             continue;
         }
@@ -225,7 +225,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     constexpr Real share_of_wanted = 0.1;
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
-        if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted_error * r.scale)
+        if (part.irregular() && error > least_share_of_bar * r.error &&
+            error > share_of_wanted * wanted_error * r.scale)
             decide(StudyVerdict::irregular,
                    (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
     };

@@ -17,7 +17,7 @@ namespace {
 
 // Two directions count as perpendicular if the absolute cosine of their angle is at most this number. They count as
 // parallel if the cosine is at least 1 minus this number.
-constexpr Real least_oblique = 1e-9;
+constexpr Real perpendicular_tolerance = 1e-9;
 
 /// Returns the matrix for AttachmentTable::held. Its columns are the unit vectors of the directions. No directions, or
 /// three, mean that nodes are held completely; the result is then the identity. Throws SceneError unless there are at
@@ -31,7 +31,7 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
         require_finite("attach", "directions", directions[d]);
         if (!(directions[d].norm() > 0)) refuse("attach", "directions", "a vector of length 0", "a nonzero length");
         const Vec3 unit = directions[d].normalized();
-        if (!((held.transpose() * unit).cwiseAbs().maxCoeff() <= least_oblique))
+        if (!((held.transpose() * unit).cwiseAbs().maxCoeff() <= perpendicular_tolerance))
             refuse("attach", "directions", short_text(directions[d]), "a direction perpendicular to those before it");
         held.col(static_cast<Index>(d)) = unit;
     }
@@ -53,7 +53,8 @@ void require_axes(const Model& model, std::size_t body, std::span<const Index> n
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
         if (table.body[a] != static_cast<Index>(body) || holds_completely(table.held[a])) continue;
         const Mat3 cosines = (table.held[a].transpose() * held).cwiseAbs();
-        if (((cosines.array() <= least_oblique) || (cosines.array() >= 1 - least_oblique)).all()) continue;
+        if (((cosines.array() <= perpendicular_tolerance) || (cosines.array() >= 1 - perpendicular_tolerance)).all())
+            continue;
         for (const Index row : rows_of(table.node, table.nodes[a]))
             if (const Index n = row - model.bodies.nodes[body].begin; std::ranges::find(nodes, n) != nodes.end())
                 refuse("attach", "directions",
@@ -104,7 +105,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     const AttachmentHandle handle = model.attachment_map.insert(static_cast<Index>(model.attachments.slot.size()));
     append_attachment(model, handle.slot, row, numbers, {pivot, Mat3::Identity()}, motion, state_->clock.time, held);
     if (implicit) {
-        find_holders(model);
+        find_holding_attachments(model);
         follow_attachments(model, b);
     }
     model.wake(b);
@@ -127,7 +128,7 @@ void World::remove(AttachmentHandle attachment) {
     model.clusters_open |= !holds_completely(model.attachments.held[static_cast<std::size_t>(row)]);
     erase_attachment(model, row);
     if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) {
-        find_holders(model);
+        find_holding_attachments(model);
         follow_attachments(model, body);
     }
     state_->edits.rows = state_->edits.elements = true;

@@ -114,7 +114,7 @@ void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
     if (model.is_rigid(row)) {
         place_rigid(*state_, row, position);
         hold_here(model, row, time());
-        find_holders(model);
+        find_holding_attachments(model);
         return;
     }
     require_upright(model, row, position, title_of_body(model, row), "position");
@@ -126,7 +126,7 @@ void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
     }
     hold_here(model, row, time());
     if (!held) return;
-    find_holders(model);
+    find_holding_attachments(model);
     follow_attachments(model, row);
 }
 

@@ -170,7 +170,7 @@ PointVelocity velocity_at(const Model& model, Index body, const Vec3& point) {
 
 /// True if another joint of the same two bodies also switches off their collisions. They then stay off when this joint
 /// is removed.
-bool parted_elsewhere(const JointTable& table, std::size_t joint) {
+bool collisions_off_by_another(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
         const bool same_pair = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||
                                (table.first[j] == table.second[joint] && table.second[j] == table.first[joint]);
@@ -180,29 +180,30 @@ bool parted_elsewhere(const JointTable& table, std::size_t joint) {
 }
 
 /// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset. The
-/// leader can mimic a further joint; the last joint of this chain is the head. OfHead gives the coordinate of a joint
+/// leader can mimic a further joint; the last joint of this chain is the head. MimicRelation gives the coordinate of a joint
 /// by that of its head: ratio * (coordinate of the head) + offset.
-struct OfHead {
+struct MimicRelation {
     Index head;
     Real ratio = 1, offset = 0;
 };
-OfHead of_head(const JointTable& table, Index joint) {
-    OfHead of{joint};
-    for (Index leader; (leader = table.leader[static_cast<std::size_t>(of.head)]) != no_index; of.head = leader) {
-        const MimicRow& mimic = table.mimic[static_cast<std::size_t>(of.head)];
-        of.offset += of.ratio * mimic.offset;
-        of.ratio *= mimic.ratio;
+MimicRelation relation_to_head(const JointTable& table, Index joint) {
+    MimicRelation relation{joint};
+    for (Index leader; (leader = table.leader[static_cast<std::size_t>(relation.head)]) != no_index;
+         relation.head = leader) {
+        const MimicRow& mimic = table.mimic[static_cast<std::size_t>(relation.head)];
+        relation.offset += relation.ratio * mimic.offset;
+        relation.ratio *= mimic.ratio;
     }
-    return of;
+    return relation;
 }
 
 /// Throws SceneError if the joints that mimics couple to `joint` cannot all be within their limits at once. `field`:
 /// changed setting of `joint`, for the message. `table`: the joints after the change.
 void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
-    const OfHead own = of_head(table, static_cast<Index>(joint));
+    const MimicRelation own = relation_to_head(table, static_cast<Index>(joint));
     Real lower = -infinity, upper = infinity;  // range of the coordinate of `joint` that satisfies all limits
     for (std::size_t j = 0; j < table.size(); ++j) {
-        const OfHead other = of_head(table, static_cast<Index>(j));
+        const MimicRelation other = relation_to_head(table, static_cast<Index>(j));
         if (other.head != own.head) continue;
         const auto in_own = [&](Real limit) { return own.ratio * ((limit - other.offset) / other.ratio) + own.offset; };
         const auto [least, most] = std::minmax({in_own(table.lower[j]), in_own(table.upper[j])});
@@ -267,7 +268,7 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.impulse_axes[row] = Mat3::Identity();
     table.parts[row] = 0;
     if (second != no_index && !joint.bodies_touch) {
-        table.parts[row] = world_->may_collide(joint.first, *joint.second) || parted_elsewhere(table, row);
+        table.parts[row] = world_->may_collide(joint.first, *joint.second) || collisions_off_by_another(table, row);
         world_->set_collision(joint.first, *joint.second, false);
     }
     wake_both(model, row);
@@ -278,7 +279,7 @@ JointHandle Joints::add(const JointSettings& joint) {
 void prepare_removal(World& world, JointHandle joint) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.joint_map.row(joint));
-    if (model.joints.parts[row] != 0 && !parted_elsewhere(model.joints, row))
+    if (model.joints.parts[row] != 0 && !collisions_off_by_another(model.joints, row))
         world.set_collision(handle_of_body(model, model.joints.first[row]), *second_of(model, row), true);
 }
 
@@ -289,8 +290,8 @@ JointState Joints::state(JointHandle joint) const {
 JointState joint_state(const Model& model, JointHandle joint) {
     const auto j = static_cast<std::size_t>(model.row(joint, "joint"));
     const JointInputs joints = JointInputs::bind({}, model.joints, model.bodies, model.rigid_bodies, model.any_asleep);
-    const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
-                     second = joints.place(joints.second[j], joints.second_frame[j]);
+    const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
+                    second = joints.place(joints.second[j], joints.second_frame[j]);
     JointState now;
     now.kind = joints.kind[j];
     now.first = handle_of_body(model, model.joints.first[j]);

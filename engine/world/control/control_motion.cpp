@@ -144,9 +144,9 @@ void for_each_script(Model& model, Index collider, auto&& change) {
 }
 
 /// Positions of all nodes of a body after one of its attachments was moved from the pose `old_pose` to `pose`. If this
-/// attachment holds the rotating frame of an implicit body (find_holders), the free nodes of the body move rigidly with
-/// the attachment. Nodes that the attachment holds in some directions move in these directions only. Nodes that other
-/// attachments hold completely do not move.
+/// attachment holds the rotating frame of an implicit body (find_holding_attachments), the free nodes of the body move
+/// rigidly with the attachment. Nodes that the attachment holds in some directions move in these directions only. Nodes
+/// that other attachments hold completely do not move.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& old_pose,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;

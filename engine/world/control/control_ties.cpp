@@ -229,7 +229,7 @@ void wake_tied(Model& model, std::size_t tie) {
 
 /// True if another tie of the same two objects also switches off their collisions. They then stay off when this tie is
 /// removed or breaks.
-bool parted_by_another(const TieTable& ties, std::size_t tie) {
+bool collisions_off_by_another(const TieTable& ties, std::size_t tie) {
     for (std::size_t other = 0; other < ties.size(); ++other) {
         const bool same_pair =
             ties.collider[other] == ties.collider[tie] &&
@@ -287,7 +287,7 @@ TieHandle Ties::add(const TieSettings& tie) {
     table.nodes[row] = {begin, static_cast<Index>(table.node.size())};
     table.parts[row] = 0;
     if (!tie.bodies_touch)
-        table.parts[row] = switch_collisions(*world_, model, row, false) || parted_by_another(table, row);
+        table.parts[row] = switch_collisions(*world_, model, row, false) || collisions_off_by_another(table, row);
     wake_tied(model, row);
     model.links_open = true;
     return handle;
@@ -296,7 +296,8 @@ TieHandle Ties::add(const TieSettings& tie) {
 void prepare_removal(World& world, TieHandle tie) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.tie_map.row(tie));
-    if (model.ties.parts[row] != 0 && !parted_by_another(model.ties, row)) switch_collisions(world, model, row, true);
+    if (model.ties.parts[row] != 0 && !collisions_off_by_another(model.ties, row))
+        switch_collisions(world, model, row, true);
 }
 
 void release_ties(WorldState& world) {
@@ -306,7 +307,7 @@ void release_ties(WorldState& world) {
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (ties.parts[t] == 0 || ties.holds(t)) continue;
         ties.parts[t] = 0;
-        if (parted_by_another(ties, t)) continue;
+        if (collisions_off_by_another(ties, t)) continue;
         const bool of_collider = ties.collider[t] != no_index;
         if (!of_collider && ties.second[t] == no_index) continue;
         const PairKind kind = of_collider ? PairKind::collider : PairKind::bodies;

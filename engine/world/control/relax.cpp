@@ -169,7 +169,7 @@ public:
         sets_.start(count);
         for (std::size_t link = 0; link < state_.model.links.first.size(); ++link)
             sets_.join(state_.model.links.first[link], state_.model.links.second[link]);
-        kinetic_.assign(count, 0);
+        kinetic_before_.assign(count, 0);
         for (std::size_t b = 0; b < count; ++b)
             if (moves(b)) stop_body(state_.model, b);
     }
@@ -212,7 +212,7 @@ private:
     }
 
     Real trusted() const {
-        const Real step = trusted_step(state_.model);
+        const Real step = longest_allowed_step(state_.model);
         return std::isfinite(step) ? step : 1.0 / 120;
     }
 
@@ -269,11 +269,12 @@ private:
     /// kinetic energy the set is near its equilibrium.
     void damp() {
         const std::size_t count = bodies_.size();
-        sum_.assign(count, 0);
-        for (std::size_t b = 0; b < count; ++b) sum_[root(b)] += bodies_[b].kinetic;
+        kinetic_now_.assign(count, 0);
+        for (std::size_t b = 0; b < count; ++b) kinetic_now_[root(b)] += bodies_[b].kinetic;
         for (std::size_t b = 0; b < count; ++b)
-            if (moves(b) && sum_[root(b)] < kinetic_[root(b)]) stop_body(state_.model, b);
-        for (std::size_t b = 0; b < count; ++b) kinetic_[b] = sum_[b] < kinetic_[b] ? 0 : sum_[b];
+            if (moves(b) && kinetic_now_[root(b)] < kinetic_before_[root(b)]) stop_body(state_.model, b);
+        for (std::size_t b = 0; b < count; ++b)
+            kinetic_before_[b] = kinetic_now_[b] < kinetic_before_[b] ? 0 : kinetic_now_[b];
     }
     std::size_t root(std::size_t body) { return static_cast<std::size_t>(sets_.root(static_cast<Index>(body))); }
 
@@ -283,9 +284,9 @@ private:
     UnionFind sets_;                     // sets of bodies that joints, ties and the like connect
     std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;    // by body
-    // Kinetic energies of the sets of joined bodies, at the index of the root of a set in `sets_` [J]: kinetic_ before
-    // this step, sum_ after it.
-    std::vector<Real> kinetic_, sum_{};
+    // Kinetic energies of the sets of joined bodies, at the index of the root of a set in `sets_` [J]: kinetic_before_ before
+    // this step, kinetic_now_ after it.
+    std::vector<Real> kinetic_before_, kinetic_now_{};
     Real largest_ = 0;  // largest out-of-balance force of a body so far [N]
 };
 

@@ -123,7 +123,7 @@ void reset_body(WorldState& world, std::size_t body, const RigidPose& pose) {
     hold_here(model, body, world.clock.time);
     if (model.has_frame(body)) {
         const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
-        find_holders(model);
+        find_holding_attachments(model);
         if (!model.is_held(body)) stop_rigid_body(model, body);
         if (!model.is_rigid(body)) undo_deformation(model, body);
         if (model.is_rigid(body) || !model.is_held(body))

@@ -84,7 +84,7 @@ void compare_costs(const Model& model, const NewBody& body, const KnownElements&
     const Real size = nodes / fitted_nodes, one_step = step_time * std::pow(size, step_power);
     estimate.implicit_step = step_with_frame(model);
     estimate.deforming_step = std::max(estimate.implicit_step, model.settings.implicit_step);
-    estimate.explicit_step = std::min(trusted_step(model), elements.rest_step * model.tuning.step_safety);
+    estimate.explicit_step = std::min(longest_allowed_step(model), elements.rest_step * model.tuning.step_safety);
     estimate.explicit_cost = (others + own) / estimate.explicit_step;
     estimate.implicit_cost = (others + ns * pile_contacts * contact_share * one_step) / estimate.implicit_step +
                              ns * (1 - contact_share) * one_step / estimate.deforming_step +

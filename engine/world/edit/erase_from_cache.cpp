@@ -15,10 +15,10 @@ public:
     bool is_gone(std::size_t p) const { return body_now(pairs_.first[p]) == no_index || second_now(p) == no_index; }
 
     void renumber(std::size_t p) const {
-        const auto &first = down(pairs_.first[p]),
-                   &second = pairs_.kind[p] == PairKind::collider ? first : down(pairs_.second[p]);
+        const auto &first = shift(pairs_.first[p]),
+                   &second = pairs_.kind[p] == PairKind::collider ? first : shift(pairs_.second[p]);
         const Index second_row = second_now(p);
-        if (first != Down{} || second != Down{} || second_row != pairs_.second[p])
+        if (first != Shift{} || second != Shift{} || second_row != pairs_.second[p])
             for (Candidate& candidate : pairs_.candidates[p]) renumber(candidate, pairs_.kind[p], first, second);
         if (pairs_.kind[p] == PairKind::collider)
             for (Candidate& candidate : pairs_.candidates[p]) candidate.second = second_row;
@@ -27,9 +27,9 @@ public:
     }
 
 private:
-    using Down = OfBodyTables<Index>;
+    using Shift = OfBodyTables<Index>;
 
-    const Down& down(Index body) const { return moves_.down[static_cast<std::size_t>(body)]; }
+    const Shift& shift(Index body) const { return moves_.shift_to_start[static_cast<std::size_t>(body)]; }
     Index body_now(Index body) const { return moves_.body_now[static_cast<std::size_t>(body)]; }
     Index second_now(std::size_t p) const {
         const Index second = pairs_.second[p];
@@ -37,7 +37,7 @@ private:
                                                     : body_now(second);
     }
 
-    static void renumber(Candidate& candidate, PairKind kind, const Down& first, const Down& second) {
+    static void renumber(Candidate& candidate, PairKind kind, const Shift& first, const Shift& second) {
         const bool of_collider = kind == PairKind::collider;
         if (is_edge_edge(candidate.feature)) {
             candidate.first -= first.edges;
@@ -125,7 +125,7 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
         [&](std::size_t c) {
             for (Index& node : contacts.stencil[c].node) {
                 const Index body = body_of_node[static_cast<std::size_t>(node)];
-                node -= moves.down[static_cast<std::size_t>(body)].nodes;
+                node -= moves.shift_to_start[static_cast<std::size_t>(body)].nodes;
             }
             contacts.first_body[c] = now(moves.body_now, contacts.first_body[c]);
             contacts.second_body[c] = now(moves.body_now, contacts.second_body[c]);

@@ -21,8 +21,8 @@ void lower(Range& range, Index by) {
 /// Renumbers the references between rows of one body, in all tables.
 class RowsOfBody {
 public:
-    RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Range>& has, const OfBodyTables<Index>& down)
-        : model_(model), body_(body), has_(has), down_(down) {}
+    RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Range>& has, const OfBodyTables<Index>& shift)
+        : model_(model), body_(body), has_(has), shift_(shift) {}
 
     void renumber() const {
         nodes();
@@ -34,21 +34,21 @@ public:
 
 private:
     void nodes() const {
-        for (Index& body : rows_of(model_.nodes.body, has_.nodes)) lower(body, down_.bodies);
-        for (Index& body : rows_of(model_.rigid_bodies.body, has_.rigid)) lower(body, down_.bodies);
-        for (Index& node : rows_of(model_.node_blocks.begin, has_.node_blocks)) lower(node, down_.nodes);
-        for (Index& node : rows_of(model_.node_blocks.end, has_.node_blocks)) lower(node, down_.nodes);
-        for (Index& body : rows_of(model_.node_blocks.body, has_.node_blocks)) lower(body, down_.bodies);
+        for (Index& body : rows_of(model_.nodes.body, has_.nodes)) lower(body, shift_.bodies);
+        for (Index& body : rows_of(model_.rigid_bodies.body, has_.rigid)) lower(body, shift_.bodies);
+        for (Index& node : rows_of(model_.node_blocks.begin, has_.node_blocks)) lower(node, shift_.nodes);
+        for (Index& node : rows_of(model_.node_blocks.end, has_.node_blocks)) lower(node, shift_.nodes);
+        for (Index& body : rows_of(model_.node_blocks.body, has_.node_blocks)) lower(body, shift_.bodies);
     }
 
     void elements() const {
         for (TetrahedronNodes& corner : rows_of(model_.tetrahedra.node, has_.tetrahedron_blocks))
             for (NodeLane& lanes : corner)
-                for (Index& node : lanes.lane) lower(node, down_.nodes);
+                for (Index& node : lanes.lane) lower(node, shift_.nodes);
         for (NodeLane& lanes : rows_of(model_.element_nodes.node, has_.element_nodes))
-            for (Index& node : lanes.lane) lower(node, down_.nodes);
-        for (Index& first : rows_of(model_.elements.first, has_.blocks)) lower(first, down_.element_nodes);
-        for (Index& body : rows_of(model_.elements.body, has_.blocks)) lower(body, down_.bodies);
+            for (Index& node : lanes.lane) lower(node, shift_.nodes);
+        for (Index& first : rows_of(model_.elements.first, has_.blocks)) lower(first, shift_.element_nodes);
+        for (Index& body : rows_of(model_.elements.body, has_.blocks)) lower(body, shift_.bodies);
     }
 
     void surface() const {
@@ -59,66 +59,66 @@ private:
             for (auto& items : rows_of(column, range))
                 for (Index& item : items) lower(item, by);
         };
-        lower_all(triangles.node, has_.triangles, down_.nodes);
-        lower_all(triangles.edge, has_.triangles, down_.edges);
-        lower_all(triangles.vertex, has_.triangles, down_.vertices);
+        lower_all(triangles.node, has_.triangles, shift_.nodes);
+        lower_all(triangles.edge, has_.triangles, shift_.edges);
+        lower_all(triangles.vertex, has_.triangles, shift_.vertices);
         constexpr auto in_block = static_cast<Index>(element_lanes);
-        for (Index& t : rows_of(triangles.element, has_.triangles)) lower(t, down_.tetrahedron_blocks * in_block);
-        lower_all(edges.node, has_.edges, down_.nodes);
-        lower_all(edges.triangle, has_.edges, down_.triangles);
-        for (Index& node : rows_of(vertices.node, has_.vertices)) lower(node, down_.nodes);
-        for (Index& item : rows_of(vertices.triangle_begin, has_.vertices)) lower(item, down_.vertex_triangles);
-        for (Index& item : rows_of(vertices.triangle_end, has_.vertices)) lower(item, down_.vertex_triangles);
-        for (Index& t : rows_of(model_.surface.vertex_triangle, has_.vertex_triangles)) lower(t, down_.triangles);
+        for (Index& t : rows_of(triangles.element, has_.triangles)) lower(t, shift_.tetrahedron_blocks * in_block);
+        lower_all(edges.node, has_.edges, shift_.nodes);
+        lower_all(edges.triangle, has_.edges, shift_.triangles);
+        for (Index& node : rows_of(vertices.node, has_.vertices)) lower(node, shift_.nodes);
+        for (Index& item : rows_of(vertices.triangle_begin, has_.vertices)) lower(item, shift_.vertex_triangles);
+        for (Index& item : rows_of(vertices.triangle_end, has_.vertices)) lower(item, shift_.vertex_triangles);
+        for (Index& t : rows_of(model_.surface.vertex_triangle, has_.vertex_triangles)) lower(t, shift_.triangles);
     }
 
     void tree() const {
         for (BvhNode& node : rows_of(model_.bvh.node, has_.bvh_nodes)) {
-            lower(node.skip, down_.bvh_nodes);
-            lower(node.right, down_.bvh_nodes);
-            lower(node.leaf, down_.bvh_leaves);
+            lower(node.skip, shift_.bvh_nodes);
+            lower(node.right, shift_.bvh_nodes);
+            lower(node.leaf, shift_.bvh_leaves);
         }
         for (LeafTriangles& leaf : rows_of(model_.bvh_leaves.triangle, has_.bvh_leaves))
-            for (Index& t : leaf) lower(t, down_.triangles);
+            for (Index& t : leaf) lower(t, shift_.triangles);
         for (LeafNodes& leaf : rows_of(model_.bvh_leaves.nodes, has_.bvh_leaves)) {
             for (auto& corner : leaf.corner)
-                for (Index& node : corner) lower(node, down_.nodes);
-            for (Index i = 0; i < leaf.count; ++i) lower(leaf.node[static_cast<std::size_t>(i)], down_.nodes);
+                for (Index& node : corner) lower(node, shift_.nodes);
+            for (Index i = 0; i < leaf.count; ++i) lower(leaf.node[static_cast<std::size_t>(i)], shift_.nodes);
         }
         for (LeafFeatures& features : rows_of(model_.bvh_leaves.features, has_.bvh_leaves)) {
             for (Index i = 0; i < features.edge_count; ++i) {
                 LeafFeatures::Edge& edge = features.edge[static_cast<std::size_t>(i)];
-                lower(edge.row, down_.edges);
-                for (Index& node : edge.node) lower(node, down_.nodes);
+                lower(edge.row, shift_.edges);
+                for (Index& node : edge.node) lower(node, shift_.nodes);
             }
             for (Index i = 0; i < features.point_count; ++i) {
                 LeafFeatures::Point& point = features.point[static_cast<std::size_t>(i)];
-                lower(point.row, down_.vertices);
-                lower(point.node, down_.nodes);
+                lower(point.row, shift_.vertices);
+                lower(point.node, shift_.nodes);
             }
         }
     }
 
     void ranges() const {
         BodyTable& table = model_.bodies;
-        lower(table.nodes[body_], down_.nodes);
-        lower(table.node_blocks[body_], down_.node_blocks);
-        lower(table.blocks[body_], down_.blocks);
-        lower(table.element_nodes[body_], down_.element_nodes);
-        lower(table.tetrahedron_blocks[body_], down_.tetrahedron_blocks);
-        lower(table.triangles[body_], down_.triangles);
-        lower(table.edges[body_], down_.edges);
-        lower(table.vertices[body_], down_.vertices);
-        lower(table.bvh_nodes[body_], down_.bvh_nodes);
-        lower(table.bvh_leaves[body_], down_.bvh_leaves);
-        lower(table.rigid[body_], down_.rigid);
-        lower(table.implicit[body_], down_.implicit);
+        lower(table.nodes[body_], shift_.nodes);
+        lower(table.node_blocks[body_], shift_.node_blocks);
+        lower(table.blocks[body_], shift_.blocks);
+        lower(table.element_nodes[body_], shift_.element_nodes);
+        lower(table.tetrahedron_blocks[body_], shift_.tetrahedron_blocks);
+        lower(table.triangles[body_], shift_.triangles);
+        lower(table.edges[body_], shift_.edges);
+        lower(table.vertices[body_], shift_.vertices);
+        lower(table.bvh_nodes[body_], shift_.bvh_nodes);
+        lower(table.bvh_leaves[body_], shift_.bvh_leaves);
+        lower(table.rigid[body_], shift_.rigid);
+        lower(table.implicit[body_], shift_.implicit);
     }
 
     Model& model_;
     std::size_t body_;
     OfBodyTables<Range> has_;
-    OfBodyTables<Index> down_;
+    OfBodyTables<Index> shift_;
 };
 
 /// Removes the records of removed table rows from a list that has one record for each row of the table.
@@ -149,9 +149,9 @@ void erase_attachments(const RowMoves& moves, Model& model) {
     AttachmentTable& table = model.attachments;
     erase_scripted_rows(moves.removed_attachments, table);
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
-        const OfBodyTables<Index>& down = moves.down[static_cast<std::size_t>(table.body[a])];
-        for (Index& node : rows_of(table.node, table.nodes[a])) lower(node, down.nodes);
-        lower(table.body[a], down.bodies);
+        const OfBodyTables<Index>& shift = moves.shift_to_start[static_cast<std::size_t>(table.body[a])];
+        for (Index& node : rows_of(table.node, table.nodes[a])) lower(node, shift.nodes);
+        lower(table.body[a], shift.bodies);
     }
     model.attachment_map.rows_moved(moves.attachment_now);
 }
@@ -171,8 +171,9 @@ void erase_colliders(const RowMoves& moves, Model& model) {
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)
-        lower(node, moves.down[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
-    for (Index& body : clusters.body) lower(body, moves.down[static_cast<std::size_t>(body)].bodies);
+        lower(node,
+              moves.shift_to_start[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
+    for (Index& body : clusters.body) lower(body, moves.shift_to_start[static_cast<std::size_t>(body)].bodies);
     clusters.cluster_of.erase(moves.removed.nodes);
     clusters.index_in_cluster.erase(moves.removed.nodes);
 }
@@ -185,7 +186,8 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     renumber_clusters(moves, model, model.clusters);
     model.known_elements.clear();
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
-        if (moves.body_now[b] != no_index) renumber_rows_of_body(model, b, rows_of_body(model, b), moves.down[b]);
+        if (moves.body_now[b] != no_index)
+            renumber_rows_of_body(model, b, rows_of_body(model, b), moves.shift_to_start[b]);
     const OfBodyTables<std::vector<Range>>& removed = moves.removed;
     constexpr auto list_of = OfBodyTables<std::vector<Range>>::members();
     const std::vector<std::vector<AnyColumn>> tables = columns_by_body_table(model);
@@ -202,8 +204,8 @@ void erase_bodies(const RowMoves& moves, Model& model) {
 }  // namespace
 
 void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
-                           const OfBodyTables<Index>& down) {
-    RowsOfBody(model, body, rows, down).renumber();
+                           const OfBodyTables<Index>& shift) {
+    RowsOfBody(model, body, rows, shift).renumber();
 }
 
 void erase_scripted_rows(std::span<const Range> removed, ColliderTable& table) {

@@ -22,10 +22,10 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
 /// Removes the rows of erased bodies and colliders from the model. Also removes the patches (groups of neighbouring
 /// element blocks) of the first erased body and of all later bodies; Model::extend_derived builds these patches again.
 void erase_gone(const RowMoves& moves, Model& model);
-/// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `down`: for
+/// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `shift`: for
 /// each table, the number that is subtracted from each reference to a row of this table.
 void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
-                           const OfBodyTables<Index>& down);
+                           const OfBodyTables<Index>& shift);
 /// Removes scripted colliders or attachments together with their keyframes. `removed`: removed rows in ascending order.
 void erase_scripted_rows(std::span<const Range> removed, ColliderTable& table);
 void erase_scripted_rows(std::span<const Range> removed, AttachmentTable& table);

@@ -261,7 +261,7 @@ void follow_attachments(Model& model, std::size_t body) {
     follow_node_velocities(model, body);
 }
 
-void find_holders(Model& model) {
+void find_holding_attachments(Model& model) {
     RigidBodyTable& table = model.rigid_bodies;
     if (table.size() == 0) return;
     const AttachmentTable& attachments = model.attachments;

@@ -35,7 +35,7 @@ RigidPose pose_of_body(const Model& model, std::size_t body);
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
 /// Finds the attachments that hold whole rigid bodies or the frames of implicit bodies, and the pose of each held body
 /// relative to its attachment.
-void find_holders(Model& model);
+void find_holding_attachments(Model& model);
 /// Must be called after an implicit body was attached or released, or after its held nodes were moved. From then on the
 /// deformation is measured in the frame of the attachment, or in the body's own frame if the body is free. All nodes
 /// keep their positions and velocities.

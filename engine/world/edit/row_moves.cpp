@@ -75,14 +75,14 @@ RowMoves row_moves(const Model& model, std::span<const std::uint8_t> bodies, std
     constexpr auto index_of = OfBodyTables<Index>::members();
     constexpr auto list_of = OfBodyTables<std::vector<Range>>::members();
     moves.removed.bodies.clear();
-    OfBodyTables<Index> down;
+    OfBodyTables<Index> shift;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        moves.down.push_back(down);
+        moves.shift_to_start.push_back(shift);
         if (!body_goes(b)) continue;
         const OfBodyTables<Range> rows = rows_of_body(model, b);
         for (std::size_t table = 0; table < range_of.size(); ++table) {
             append_gone(rows.*range_of[table], moves.removed.*list_of[table]);
-            down.*index_of[table] += (rows.*range_of[table]).size();
+            shift.*index_of[table] += (rows.*range_of[table]).size();
         }
     }
     return moves;

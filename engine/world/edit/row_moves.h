@@ -36,7 +36,7 @@ OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body);
 struct RowMoves {
     OfBodyTables<std::vector<Range>> removed;  // removed rows of each table, ascending
     // for each old body row: number of rows by which the body's rows in each table move towards the start
-    std::vector<OfBodyTables<Index>> down;
+    std::vector<OfBodyTables<Index>> shift_to_start;
     std::vector<Index> body_now;             // for each old body row: its new row; no_index: removed
     std::vector<Range> removed_colliders;    // ascending
     std::vector<Index> collider_now;         // for each old collider row: its new row; no_index: removed

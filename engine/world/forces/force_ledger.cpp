@@ -105,7 +105,7 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
         const ContactPartners& partners = of_rest.partners;
         if (!rests(model, partners.first) || (partners.second != no_index && !rests(model, partners.second))) continue;
         PairRow& row = pair(key_of(model, partners));
-        row.still = of_rest.sums;
+        row.sums_at_rest = of_rest.sums;
         row.still_seconds = 1;
         row.still_contacts = of_rest.contacts;
     }
@@ -139,10 +139,10 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
         row.still_seconds = 1;
         for (const std::size_t n : held) {
             const Vec3 others = nodes.mass[n] * model.settings.gravity + nodes.applied_before[n] + contact_force[n];
-            row.still += {-others, (moment_point_ - nodes.position[n]).cross(others)};
+            row.sums_at_rest += {-others, (moment_point_ - nodes.position[n]).cross(others)};
         }
         if (model.is_held(static_cast<std::size_t>(body)) && !model.is_rigid(static_cast<std::size_t>(body))) {
-            row.still += hold_of_implicit(model, a, held, moment_point_);
+            row.sums_at_rest += hold_of_implicit(model, a, held, moment_point_);
             continue;
         }
         const auto power = [&](auto&& motion_of) {
@@ -152,8 +152,8 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
         };
         for (int axis = 0; axis < 3; ++axis) {
             const Vec3 unit = Vec3::Unit(axis);
-            row.still.impulse[axis] += power([&](const Vec3&) { return unit; });
-            row.still.moment[axis] += power([&](const Vec3& x) { return Vec3(unit.cross(x - moment_point_)); });
+            row.sums_at_rest.impulse[axis] += power([&](const Vec3&) { return unit; });
+            row.sums_at_rest.moment[axis] += power([&](const Vec3& x) { return Vec3(unit.cross(x - moment_point_)); });
         }
         for (const std::size_t n : held) motion[n].setZero();
     }
@@ -180,7 +180,7 @@ void ForceLedger::take_over_axes(const Model& model, std::size_t attachment, std
         }
         motion[n].setZero();
         force = held * (held.transpose() * force);
-        row.still += {force, (nodes.position[n] - moment_point_).cross(force)};
+        row.sums_at_rest += {force, (nodes.position[n] - moment_point_).cross(force)};
     }
 }
 
@@ -249,7 +249,7 @@ void ForceLedger::begin_call(const Model& model, Real step_before, StepScratch& 
         row.sums = {};
         row.peak.begin_call();
     }
-    std::erase_if(pairs_, [](const PairRow& row) { return is_zero(row.still); });
+    std::erase_if(pairs_, [](const PairRow& row) { return is_zero(row.sums_at_rest); });
     for (Peak& peak : bodies_) peak.begin_call();
     for (Peak& peak : colliders_) peak.begin_call();
     for (AttachmentRow& row : attachments_) {
@@ -279,8 +279,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 /// the step. In the step that stops a body, contacts also take its momentum, so their forces are not those at rest.
 /// They count nevertheless if the body falls asleep in this step, because no others are known.
 bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
-    const Real still = model.bodies.still_time[body];
-    return still > step_.whole_step || (still > 0 && rests(model, static_cast<Index>(body)));
+    const Real still_time = model.bodies.still_time[body];
+    return still_time > step_.whole_step || (still_time > 0 && rests(model, static_cast<Index>(body)));
 }
 
 /// Completes the sums of a pair at the end of a step.
@@ -288,13 +288,13 @@ bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
 ///   at rest, which is still / still_seconds.
 /// - If a body was awake but both stayed still, the step is added to still_seconds.
 /// - If a body has moved, `still` and still_seconds are set to zero.
-void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
+void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> was_asleep, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
     const Real seconds = is_implicit(model, row.key) ? step_.whole_step : step_.kick;
-    if (rested[first] && rested[second]) {
+    if (was_asleep[first] && was_asleep[second]) {
         if (!row.touched && row.still_seconds > 0) {
-            const ContactSums held = (seconds / row.still_seconds) * row.still;
+            const ContactSums held = (seconds / row.still_seconds) * row.sums_at_rest;
             row.sums += held;
             row.peak.add(held.impulse, row.still_contacts);
             add_to_partners(row.key, held.impulse, row.still_contacts);
@@ -305,26 +305,26 @@ void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t
     if (stayed_still(model, first) && stayed_still(model, second)) {
         row.still_seconds += seconds;
     } else {
-        row.still = {};
+        row.sums_at_rest = {};
         row.still_seconds = 0;
     }
 }
 
-void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch) {
+void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> was_asleep, const StepScratch& scratch) {
     for (const PairSums& of_step : scratch.forces.pairs) {
         PairRow& row = pair(key_of(model, of_step.partners));
         row.sums += of_step.sums;
         const ContactPartners& partners = of_step.partners;
-        const bool both_rested =
-            rested[static_cast<std::size_t>(partners.first)] != 0 &&
-            (partners.second == no_index || rested[static_cast<std::size_t>(partners.second)] != 0);
-        if (!both_rested) row.still += of_step.sums;
+        const bool both_were_asleep =
+            was_asleep[static_cast<std::size_t>(partners.first)] != 0 &&
+            (partners.second == no_index || was_asleep[static_cast<std::size_t>(partners.second)] != 0);
+        if (!both_were_asleep) row.sums_at_rest += of_step.sums;
         row.peak.add(of_step.sums.impulse, of_step.contacts);
         row.touched = true;
         add_to_partners(row.key, of_step.sums.impulse, of_step.contacts);
     }
     for (PairRow& row : pairs_) {
-        end_pair_step(model, rested, row);
+        end_pair_step(model, was_asleep, row);
         row.peak.end_step(is_implicit(model, row.key) ? step_.whole_step : step_.kick);
         row.touched = false;
     }
@@ -334,21 +334,22 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> re
     for (Peak& peak : colliders_) peak.end_step(step_.kick);
 }
 
-void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch) {
+void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t> was_asleep,
+                                const StepScratch& scratch) {
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
         if (model.attachments.slot[a] == no_slot) continue;
         AttachmentRow& row = attachments_[model.attachments.slot[a]];
         const auto body = static_cast<std::size_t>(model.attachments.body[a]);
         const Real seconds = is_implicit(model, body) ? step_.whole_step : step_.kick;
         ImpulseAndMoment of_step = scratch.forces.reactions[a];
-        if (rested[body]) {
+        if (was_asleep[body]) {
             const Real part = row.still_seconds > 0 ? seconds / row.still_seconds : 0;
-            of_step = {part * row.still.impulse, part * row.still.moment};
+            of_step = {part * row.sums_at_rest.impulse, part * row.sums_at_rest.moment};
         } else if (stayed_still(model, body)) {
-            row.still += of_step;
+            row.sums_at_rest += of_step;
             row.still_seconds += seconds;
         } else {
-            row.still = {};
+            row.sums_at_rest = {};
             row.still_seconds = 0;
         }
         row.sums += of_step;
@@ -357,12 +358,12 @@ void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t
     }
 }
 
-void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch) {
+void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> was_asleep, StepScratch& scratch) {
     step_ = {scratch.parameters.h, scratch.parameters.kick_time};
     call_.whole_step += step_.whole_step;
     call_.kick += step_.kick;
-    add_pairs(model, rested, scratch);
-    add_reactions(model, rested, scratch);
+    add_pairs(model, was_asleep, scratch);
+    add_reactions(model, was_asleep, scratch);
     for (const Index n : model.attachments.node)
         scratch.forces.held_velocity[static_cast<std::size_t>(n)] = model.nodes.velocity[static_cast<std::size_t>(n)];
 }

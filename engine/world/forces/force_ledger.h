@@ -50,15 +50,15 @@ public:
         PairKey key{};
         // number of contacts in the last step that began with a body of the pair awake
         ContactSums sums{};      // sums of contact impulses over the call of advance
-        ContactSums still{};     // sums of contact impulses over the time in which both objects were still
-        Real still_seconds = 0;  // time over which `still` is summed [s]
+        ContactSums sums_at_rest{};     // sums of contact impulses over the time in which both objects were sums_at_rest
+        Real still_seconds = 0;  // time over which `sums_at_rest` is summed [s]
         // number of contacts in the last step at the start of which a body of the pair was awake
         Index still_contacts = 0;
         Peak peak{};
         bool touched = false;  // true if the pair had contacts in the present step
     };
     struct AttachmentRow {
-        ImpulseAndMoment sums, still;
+        ImpulseAndMoment sums, sums_at_rest;
         Real still_seconds = 0;
         Peak peak{};
     };
@@ -88,9 +88,9 @@ public:
     /// the sums to zero, and stores the velocities of held nodes. `step_before`: length of the last step before the
     /// call; 0 if there was none [s].
     void begin_call(const Model& model, Real step_before, StepScratch& scratch);
-    /// Must be called after a committed step. `rested`: for each body, nonzero if the body was asleep when the step
+    /// Must be called after a committed step. `was_asleep`: for each body, nonzero if the body was asleep when the step
     /// began.
-    void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
+    void add_step(const Model& model, std::span<const std::uint8_t> was_asleep, StepScratch& scratch);
     /// Adds the impulses by which attachments change the velocities of held nodes in a drift (the part of a leapfrog
     /// step that moves the positions). Must be called after the drift has moved positions by `seconds` [s].
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
@@ -109,11 +109,11 @@ private:
     void take_over_rest(const Model& model, const RestingContactTable& resting);
     void take_over_reactions(const Model& model, std::span<const Vec3> contact_force);
     void take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force);
-    void add_pairs(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
+    void add_pairs(const Model& model, std::span<const std::uint8_t> was_asleep, const StepScratch& scratch);
     bool stayed_still(const Model& model, std::size_t body) const;
-    void end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row);
+    void end_pair_step(const Model& model, std::span<const std::uint8_t> was_asleep, PairRow& row);
     void add_to_partners(const PairKey& key, const Vec3& impulse, Index contacts);
-    void add_reactions(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
+    void add_reactions(const Model& model, std::span<const std::uint8_t> was_asleep, const StepScratch& scratch);
 
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // [m]

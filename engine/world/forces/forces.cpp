@@ -95,8 +95,8 @@ ForceReport Forces::on(BodyHandle body) const {
         else if (is_first || is_second)
             add(pair.sums, is_first ? PairSide::first : PairSide::second, report);
     }
-    const bool rested = world_->model.bodies.asleep[static_cast<std::size_t>(row)] != 0;
-    report.measured = report.seconds > 0 && (rested || ledger.shows_contacts());
+    const bool was_asleep = world_->model.bodies.asleep[static_cast<std::size_t>(row)] != 0;
+    report.measured = report.seconds > 0 && (was_asleep || ledger.shows_contacts());
     return report;
 }
 

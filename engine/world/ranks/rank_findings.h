@@ -26,7 +26,7 @@ struct RankFindings {
     Index strained_body = nobody;
     Index unsolved_body = nobody;  // StrainFindings::unsolved
     Index crossings = 0;           // StepFindings::crossings
-    // Number of inverted tetrahedra, and the first of them (Inversions). `inverts_first`: Inversions::first.
+    // Number of inverted tetrahedra, and the first of them (Inversions). `inverts_first`: Inversions::is_first_of_body.
     Index inversions = 0;
     Index inverted_body = nobody;
     Index inverted_tetrahedron = no_index;  // number of the tetrahedron within the body

@@ -84,7 +84,7 @@ struct StageFindings {
 /// Counts the inverted tetrahedra of bodies that this rank owns, and names the first one. Tetrahedra of ghosts (copies
 /// of other bodies) are counted by the ranks that own these bodies.
 void note_inversions(const NamedBodies& bodies, const StageFindings& found, RankFindings& own_findings) {
-    own_findings.inverts_first = found.inversions.first;
+    own_findings.inverts_first = found.inversions.is_first_of_body;
     for (const InversionPart& part : found.inversion_parts) {
         if (part.count == 0 || !bodies.owns(part.body)) continue;
         if (own_findings.inversions == 0) {

@@ -126,7 +126,7 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
-    find_holders(model);
+    find_holding_attachments(model);
     // Model::forced tells whether force elements (loads, springs and the like) act. It must stay true for one step
     // after the last of them was removed, because this step counts the work of its last forces. The world may have been
     // saved before this step. note_forces keeps `forced` true only if it was true before the call, so it is set here.

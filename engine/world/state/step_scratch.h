@@ -98,7 +98,7 @@ struct StepFindings {
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
-    return inversions.first && !parameters.let_invert;
+    return inversions.is_first_of_body && !parameters.let_invert;
 }
 /// True if the step can be committed: the attempt has found no fault, no crossing, and no inversion that must be
 /// avoided.

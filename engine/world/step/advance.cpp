@@ -45,7 +45,7 @@ bool keep_watch(WorldState& world) {
 /// of the call.
 AttemptLimits limits_of_first_attempt(WorldState& world) {
     const Model& model = world.model;
-    const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
+    const Real longest = longest_allowed_step(model), max_strain_step = model.tuning.max_strain_step;
     if (!std::isfinite(longest)) return {};
     constexpr bool pushed = false;
     CheckInputs state = CheckInputs::bind(Binder(), model.node_blocks, model.bodies, model.nodes, model.tetrahedra,
@@ -138,7 +138,7 @@ void note_inversions(WorldState& world, StepReport& report) {
 void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
-    const Real trusted = trusted_step(world.model, &body);
+    const Real trusted = longest_allowed_step(world.model, &body);
     body = world_row_of_stiffest(world, body);
     if (body == no_index || *world.model.settings.step_size <= trusted) return;
     ++report.limited;
@@ -182,7 +182,7 @@ bool check_after_rounds(WorldState& world) {
 /// nothing (rounding). `end`: time at the end of the call [s].
 bool is_too_stiff(WorldState& world, const AttemptLimits& attempt, Real end) {
     Index stiffest = no_index;
-    const Real trusted = trusted_step(world.model, &stiffest);
+    const Real trusted = longest_allowed_step(world.model, &stiffest);
     if (std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end) return false;
     world.scratch.findings.verdict = {StepFault::too_stiff, world_row_of_stiffest(world, stiffest), no_index, trusted};
     return true;
@@ -325,8 +325,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         // A repeated attempt with longer contact lists or with crossings must keep the step length for which these were
         // found.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
-        const Real within = time_to_end_of_long_step(model, remaining, clock.long_step);
-        const StepPlan plan = plan_step(model, within, attempt.at_most());
+        const Real time_to_interval_end = time_to_end_of_long_step(model, remaining, clock.long_step);
+        const StepPlan plan = plan_step(model, time_to_interval_end, attempt.at_most());
         if (model.watch.first_piece.empty()) count_pieces(world);
         store_shapes(*world.executor, model, steps_per_round(world));
         world.query_trees.forget();
@@ -346,17 +346,17 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         }
         if (outcome != StepOutcome::committed) continue;
         complete_step(world, let_through, report);
-        remaining = plan.steps > 1 || within < remaining ? remaining - plan.h : 0;
+        remaining = plan.steps > 1 || time_to_interval_end < remaining ? remaining - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
         balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world) && !check_after_rounds(world)) check_at_end = true;
-        const bool heard = callbacks.run([&] {
+        const bool callbacks_ok = callbacks.run([&] {
             show_contact_problem(world, start);
             if (world.record.step_watch) world.record.step_watch(std::as_const(report));
             return true;
         });
-        stops |= !heard;
-        if (!heard && !world.ranks.on()) break;
+        stops |= !callbacks_ok;
+        if (!callbacks_ok && !world.ranks.on()) break;
     }
     // If a rank has asked to stop in the last step of the call, the loop has ended before its check of
     // all_findings.stop.
@@ -390,7 +390,7 @@ Real lag_between_steps(const WorldState& world) {
     // With leapfrog, the drift at the end of a call brings positions and velocities to the same time.
     if (world.model.settings.integrator == Integrator::leapfrog) return 0;
     const Real before = world.clock.step_before;
-    const Real step = before > 0 ? before : trusted_step(world.model);
+    const Real step = before > 0 ? before : longest_allowed_step(world.model);
     return std::isfinite(step) ? step / 2 : 0;  // infinite in a world without bodies, where the lag has no meaning
 }
 

@@ -29,14 +29,14 @@ constexpr Real entry_cost = 0.7;
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
 /// Upper bound of the moment of inertia that clusters may add to a body. The bound is the larger of two values:
-/// most_moment times the smallest principal moment I of the body, and of_lumping times the amount by which lumping of
+/// share_of_moment times the smallest principal moment I of the body, and share_of_lumping times the amount by which lumping of
 /// the masses increases I. In typical meshes the bound is 3 to 20 % of I.
-constexpr Real most_moment = 0.01, of_lumping = 0.25;
+constexpr Real share_of_moment = 0.01, share_of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
 /// Assumed stiffness of the elements of clusters, divided by their stiffness at rest. Cluster matrices are computed
 /// with this stiffness, so that steps stay stable while strain stiffens the elements.
-constexpr Real headroom = 4;
+constexpr Real stiffness_ratio = 4;
 /// Bodies with more nodes than this count as large. A step length is rejected if more than the fraction
 /// most_volume_of_large of the volume of a large body would be implicit. The implicit elements would then probably form
 /// a cluster larger than largest_cluster. This test is faster than the search for implicit elements.
@@ -120,9 +120,9 @@ void note_implicit(Model& model, std::size_t b) {
 /// moment.
 Real largest_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
-    return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
-                                                                rows_of(model.tetrahedra.volume, blocks),
-                                                                model.nodes.rest_position));
+    return std::max(share_of_moment, share_of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
+                                                                          rows_of(model.tetrahedra.volume, blocks),
+                                                                          model.nodes.rest_position));
 }
 
 struct Assessment {
@@ -171,9 +171,10 @@ public:
         }
         start(b, twins);
         const SavedElements saved(model_, twins.searched);
-        const ImplicitShare share = twins.search->find(
-            {step, step / gain_of_forms, headroom, twins.most_moment, largest_cluster, model_.nodes.inverse_mass});
-        const Assessment found = assess(model_, twins.searched, share, twins.most_moment);
+        const ImplicitShare share =
+            twins.search->find({step, step / gain_of_forms, stiffness_ratio, twins.largest_moment, largest_cluster,
+                                model_.nodes.inverse_mass});
+        const Assessment found = assess(model_, twins.searched, share, twins.largest_moment);
         Result result{step, found, SavedElements(model_, twins.searched)};
         saved.restore(model_, twins.searched);
         result.elements.restore(model_, b);
@@ -189,7 +190,7 @@ private:
     };
     struct TwinGroup {
         std::size_t bodies = 0, searched = 0;
-        Real most_moment = 0;                    // see largest_moment_of
+        Real largest_moment = 0;                 // see largest_moment_of
         std::optional<ImplicitSearch> search{};  // created when it is first used
         std::vector<Result> results{};
     };
@@ -205,7 +206,7 @@ private:
         twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
                              stiffness_sum_, outputs_of(model_, blocks), kernels().element_bounds);
         twins.searched = b;
-        twins.most_moment = largest_moment_of(model_, b);
+        twins.largest_moment = largest_moment_of(model_, b);
     }
     Model& model_;
     std::span<Real> stiffness_sum_;
@@ -388,7 +389,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present_step,
     const Assessment found =
         assess(model, body,
                add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
-                                     {cluster_step, step, headroom, largest_moment}, stiffness_sum,
+                                     {cluster_step, step, stiffness_ratio, largest_moment}, stiffness_sum,
                                      outputs_of(model, blocks), kernels().element_bounds),
                largest_moment);
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (steps_per_inversion * step);

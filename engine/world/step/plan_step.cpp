@@ -48,7 +48,7 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
 
 StepPlan plan_step(const Model& model, Real remaining, Real fast_limit) {
     StepPlan plan;
-    plan.stable = trusted_step(model, &plan.stiffest);
+    plan.stable = longest_allowed_step(model, &plan.stiffest);
     Index fastest = no_index;
     plan.regular = step_of_turns(model, plan.stable, fastest);
     const Real longest = std::min(plan.stable, fast_limit);

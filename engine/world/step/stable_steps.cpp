@@ -40,17 +40,18 @@ Real step_of_body(const Model& model, std::size_t body) {
     Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
     damping += bound_of(model.force_damping, body);
     // In each step of length h, damping multiplies velocities by the factor k = exp(-damping h). A mode of the circular
-    // frequency omega is then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `half` is 1 + k for
-    // h = `step`; without damping it is 2. The resulting step is at most this h, so its k is at least as large.
-    const Real half = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
-    step *= std::sqrt(half / 2);
+    // frequency omega is then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `one_plus_k` is 1 +
+    // k for h = `step`; without damping it is 2. The resulting step is at most this h, so its k is at least as large.
+    const Real one_plus_k = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
+    step *= std::sqrt(one_plus_k / 2);
     const Real drag = bound_of(model.force_drag, body);
     if (!(drag > 0)) return step;
     // Drag forces -c m v with the rate c reduce k by c h, so the condition becomes (omega h)^2 < 2 (1 + k - c h). The
     // longest stable step is the h for which both sides are equal. A second bound, 1/c, ensures that drag does not
     // reverse velocities; for bodies without elements it is the only limit.
-    const Real share = std::isfinite(step) ? drag * step / (2 * half) : 0;
-    return std::min(std::isfinite(step) ? step * (std::sqrt(1 + share * share) - share) : step, 1 / drag);
+    const Real drag_share = std::isfinite(step) ? drag * step / (2 * one_plus_k) : 0;
+    return std::min(std::isfinite(step) ? step * (std::sqrt(1 + drag_share * drag_share) - drag_share) : step,
+                    1 / drag);
 }
 
 Real stable_step(const Model& model, Index* body) {
@@ -76,11 +77,12 @@ bool is_strained(const Model& model, std::size_t body) {
 
 Real reported_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body);
-    return (model.rigid_bodies.size() > 0 || model.of_ranks.has_frames) && std::isinf(stable) ? trusted_step(model)
-                                                                                              : stable;
+    return (model.rigid_bodies.size() > 0 || model.of_ranks.has_frames) && std::isinf(stable)
+               ? longest_allowed_step(model)
+               : stable;
 }
 
-Real trusted_step(const Model& model, Index* body) {
+Real longest_allowed_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body) * model.tuning.step_safety;
     Real wanted = model.rigid_bodies.size() > 0 || model.of_ranks.has_frames ? step_of_rigid_bodies : stable;
     if (model.settings.step_size) wanted = *model.settings.step_size;

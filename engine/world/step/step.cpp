@@ -149,7 +149,7 @@ void separate(WorldState& w, TaskGraph& g) {
     of_forces<&ForceElement::mark_driven>(w, g);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables,
-                               w.scratch.rank_regions.elsewhere),
+                               w.scratch.rank_regions.solved_elsewhere),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
 }
 

@@ -133,12 +133,12 @@ bool is_strained(const Model& model, std::size_t body);
 /// 6.1) and for the force elements that act on it.
 Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports [s]. If it is infinite in a world with rigid or implicit bodies, the upper bound of the step
-/// length (trusted_step) is returned instead.
+/// length (longest_allowed_step) is returned instead.
 Real reported_step(const Model& model, Index* body = nullptr);
 /// Upper bound of the step length: the least of three values [s]. The first is the stable step times
 /// Tuning::step_safety. The second is Settings::step_size if it is given, otherwise 1/120 s if the world has rigid or
 /// implicit bodies. The third is Settings::implicit_step if it is above 0 and the world has implicit bodies.
-Real trusted_step(const Model& model, Index* body = nullptr);
+Real longest_allowed_step(const Model& model, Index* body = nullptr);
 /// Upper bound that the step length would have after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
 /// Evaluates the stable step [s] of one body for the node positions `position`. `stiffness_sum`: working memory, by

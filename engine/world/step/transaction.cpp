@@ -48,9 +48,9 @@ constexpr Real fast_growth = 1.5;
 /// step may deform elements faster than the present one.
 constexpr Real strain_margin = 0.9;
 /// Limits for the length of a repeated step, after an attempt that deformed an element too fast, as fractions of the
-/// length of this attempt. least_at_once: upper limit, so each repetition shortens the step at least by a tenth.
-/// most_at_once: lower limit, so no repetition shortens the step to less than a quarter.
-constexpr Real least_at_once = 0.9, most_at_once = 0.25;
+/// length of this attempt. longest_repeat: upper limit, so each repetition shortens the step at least by a tenth.
+/// shortest_repeat: lower limit, so no repetition shortens the step to less than a quarter.
+constexpr Real longest_repeat = 0.9, shortest_repeat = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
     to.resize(from.size());
@@ -241,7 +241,7 @@ AttemptLimits limits_of_shorter_attempt(const WorldState& world, const StepPlan&
                                ? plan.regular
                                : plan.regular * most_shortening / most_shortening_against_speed;
         const Real slow = slow_enough(fastest, world.scratch.parameters.max_strain_step, least);
-        next.slow_enough = std::clamp(slow, plan.h * most_at_once, plan.h * least_at_once);
+        next.slow_enough = std::clamp(slow, plan.h * shortest_repeat, plan.h * longest_repeat);
         next.fastest = fastest.body;
     } else {
         next.longest = plan.h / 2;

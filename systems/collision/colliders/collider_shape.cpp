@@ -106,7 +106,7 @@ ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Ve
     return {rim.radius * rim_direction(k % points_of_rim, normal) + Vec3(0, 0, rim.z), 0};
 }
 
-bool collider_point_follows(ColliderShape shape, Index k) {
+bool is_moving_rim_point(ColliderShape shape, Index k) {
     return (shape == ColliderShape::cylinder || shape == ColliderShape::bucket) && k % points_of_rim == 0;
 }
 
@@ -189,7 +189,7 @@ FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalF
     contact.distance = height - contact.point.radius;
     // Point 0 of a rim moves around the rim while the face rotates. A bound for this point must therefore hold for the
     // complete collider.
-    contact.nearest = collider_point_follows(geometry.shape, k)
+    contact.nearest = is_moving_rim_point(geometry.shape, k)
                           ? hull_distance(geometry, face)
                           : std::sqrt(contact.closest.distance_squared) - contact.point.radius;
     return contact;

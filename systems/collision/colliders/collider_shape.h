@@ -27,7 +27,7 @@ Index collider_point_count(ColliderShape shape);
 ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal);
 
 /// True if point k is the first point of a rim: its position depends on the normal of the face (collider_point).
-bool collider_point_follows(ColliderShape shape, Index k);
+bool is_moving_rim_point(ColliderShape shape, Index k);
 
 /// A flat region of a shape is a volume at a flat or hollow side of the shape, in which the signed distance is a linear
 /// or concave function. On a segment or triangle in this volume, the distance is therefore least at an end or corner,

@@ -36,9 +36,9 @@ struct Bracket {
 };
 
 /// Distance between an edge and a part of a collider, as a function of the parameter s along the edge, from 0 to 1.
-class Along {
+class DistanceAlongEdge {
 public:
-    Along(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b)
+    DistanceAlongEdge(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b)
         : geometry_(geometry), part_(part), a_(a), edge_(b - a), length_(edge_.norm()) {}
 
     Real length() const { return length_; }
@@ -102,15 +102,15 @@ private:
 };
 
 /// Finds the parameter s along an edge at which the derivative of the distance passes the value `slope`. The search
-/// first tests the kinks and the parameter predicted by Along::place_of. Then it narrows the interval by regula falsi
-/// (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and where the
-/// derivative is constant.
-class PlaceOfSlope {
+/// first tests the kinks and the parameter predicted by DistanceAlongEdge::place_of. Then it narrows the interval by
+/// regula falsi (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and
+/// where the derivative is constant.
+class SlopeRoot {
 public:
     /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a
     /// derivative of exactly `slope` counts as below `slope`. On a stretch where the derivative has this value, the end
     /// is then found instead of the start.
-    PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
+    SlopeRoot(const DistanceAlongEdge& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
         : along_(along),
           on_(on),
           below_(below - slope),
@@ -151,7 +151,7 @@ private:
         if (same_side_ > 1) (is_below ? above_ : below_) *= 0.5;
     }
 
-    const Along& along_;
+    const DistanceAlongEdge& along_;
     Bracket on_;
     Real below_, above_;
     const Real slope_;
@@ -165,7 +165,7 @@ private:
 /// which the distance rises steeply are contact points, too.
 class Stretch {
 public:
-    Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
+    Stretch(const DistanceAlongEdge& along, Bracket interval, Index first_number, EdgeContact& contact)
         : along_(along),
           interval_(interval),
           slope_low_(along.slope(interval.low)),
@@ -195,13 +195,13 @@ private:
     /// value at a kink, the parameter just behind the kink is returned, because the normal there is valid along the
     /// flat stretch.
     Real first_place(Real slope) const {
-        return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
+        return SlopeRoot(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
     /// Parameter up to which the derivative of the distance is at most `slope`. If the derivative jumps past this value
     /// at a kink, the parameter just before the kink is returned, because the normal there is valid along the flat
     /// stretch.
     Real last_place(Real slope) const {
-        return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, slope, true).find().low;
+        return SlopeRoot(along_, interval_, slope_low_, slope_high_, slope, true).find().low;
     }
 
     void add_minimum() {
@@ -236,7 +236,7 @@ private:
         contact_.point[contact_.count++] = {first_number_ + number, s, on};
     }
 
-    const Along& along_;
+    const DistanceAlongEdge& along_;
     const Bracket interval_;
     const Real slope_low_, slope_high_;
     const Index first_number_;
@@ -246,7 +246,7 @@ private:
 /// Divides the edge into intervals of the parameter. Calls visit(low, high) for each interval in which the derivative
 /// of the distance passes one of the values -steep_slope, -flat_slope, flat_slope or steep_slope. Returns a lower bound
 /// of the distance between the edge and the part (edge_distance).
-Real scan(const Along& along, bool convex, auto&& visit) {
+Real scan(const DistanceAlongEdge& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
     Real nearest = infinity, low = 0;
     SurfacePoint before = along.at(0);
@@ -276,11 +276,11 @@ bool is_convex_part(const ColliderGeometry& geometry, Index part) {
 }
 
 Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
-    return scan(Along(geometry, part, a, b), is_convex_part(geometry, part), [](Real, Real) {});
+    return scan(DistanceAlongEdge(geometry, part, a, b), is_convex_part(geometry, part), [](Real, Real) {});
 }
 
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
-    const Along along(geometry, part, a, b);
+    const DistanceAlongEdge along(geometry, part, a, b);
     const bool convex = is_convex_part(geometry, part);
     EdgeContact contact;
     Index next = 0;

@@ -157,7 +157,7 @@ Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& cor
 }
 
 Touch nearest_on_face(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
-    if (collider_point_follows(geometry.shape, k)) return nearest_on_rim(geometry, k, corner);
+    if (is_moving_rim_point(geometry.shape, k)) return nearest_on_rim(geometry, k, corner);
     const ColliderPoint point = collider_point(geometry, k, Vec3::Zero());
     const PointTriangle closest = closest_point_on_triangle(point.at, corner[0], corner[1], corner[2]);
     const Vec3 offset = closest.nearest - point.at;

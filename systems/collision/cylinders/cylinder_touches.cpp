@@ -21,7 +21,7 @@ namespace {
 constexpr Real standing_tilt = 1e-4;
 // If the sine of the angle between an end of the cylinder and a flat side of another shape exceeds this limit, only one
 // point of the rim of this end can touch the side.
-constexpr Real lying_tilt = 0.5;
+constexpr Real lying_sine = 0.5;
 // Angle by which a contact normal at an edge or rim may be outside of the range between the normals of the two adjacent
 // sides [rad]. Capsules have an equal tolerance (axis_tilt in point_triangle_contact.cpp).
 constexpr Real rim_angle = 0.03;
@@ -55,7 +55,7 @@ struct CylinderRim {
     // `outward`: direction of the outward normal of the curved side along the radius, 1 or -1. `along`: direction of
     // the outward normal of the flat side along z, 1 or -1.
     Real outward, along;
-    bool faces(const Vec3& normal, const Vec3& direction) const {
+    bool can_touch_along(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;
     }
 };
@@ -130,7 +130,7 @@ struct FlatSide {
     Vec3 half;                  // half extents of a rectangle [m]
     Real inner = 0, outer = 0;  // inner and outer radius of a disc or ring [m]
 
-    bool holds(const Vec3& p) const {
+    bool contains_projection(const Vec3& p) const {
         switch (region) {
             case Region::all:
                 return true;
@@ -227,7 +227,7 @@ private:
             for_each_minimum(
                 rim, [&](const Vec3& p) { return other_at(p); },
                 [&](Index k, const Vec3& direction, const SurfacePoint& on) {
-                    if (rim.faces(-on.normal, direction))
+                    if (rim.can_touch_along(-on.normal, direction))
                         add(numbers_per_rim * end + k, on.distance, on.normal, on.point);
                 });
         }
@@ -243,7 +243,7 @@ private:
                 return on;
             },
             [&](Index k, const Vec3& direction, const SurfacePoint& on) {
-                if (!rim.faces(-on.normal, direction)) return;
+                if (!rim.can_touch_along(-on.normal, direction)) return;
                 add(first_on_other_rims + numbers_per_rim * rim_number + k, on.distance, -(pose_.rotation * on.normal),
                     from_other(rim_point(rim.radius, rim.z, direction)));
             });
@@ -255,14 +255,14 @@ private:
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = pose_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
-        const bool stands = normal.head<2>().norm() <= lying_tilt;
+        const bool stands = normal.head<2>().norm() <= lying_sine;
         const auto add_if_above = [&](Index k, const Vec3& p) {
             const Real height = normal.dot(p - at);
             const Vec3 foot = p - height * normal;
-            if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
+            if (side.contains_projection(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
                 add(first_on_sides + numbers_per_side * number + k, height, normal, foot);
         };
-        // If the ends of the cylinder are tilted against the side by more than 30 degrees (lying_tilt), touch_rims()
+        // If the ends of the cylinder are tilted against the side by more than 30 degrees (lying_sine), touch_rims()
         // already finds the only possible contact point of each rim, the one that reaches furthest.
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
@@ -289,11 +289,11 @@ private:
         const FlatSide side = end_of(own_, end);
         // Normal of the end in the frame of the other cylinder.
         const Vec3 normal = pose_.rotation.transpose() * side.normal;
-        if (normal.head<2>().norm() > lying_tilt) return;
+        if (normal.head<2>().norm() > lying_sine) return;
         const auto add_if_above = [&](Index k, const Vec3& p) {
             const Vec3 here = from_other(p);
             const Real height = side.normal.dot(here - side.at);
-            if (side.holds(here) && is_before(side, height, own_, 0, here))
+            if (side.contains_projection(here) && is_before(side, height, own_, 0, here))
                 add(first_on_sides + numbers_per_side * number + k, height, -side.normal, here);
         };
         for (const RimPoints::Point& p : RimPoints(other_, normal))
@@ -402,7 +402,7 @@ RimPoints::RimPoints(const ColliderGeometry& cylinder, const Vec3& normal) {
                               rim_point(cylinder.size[0], end == 0 ? cylinder.size[1] : -cylinder.size[1], direction)};
         };
         put(0, deepest);
-        if (tilt > lying_tilt) continue;
+        if (tilt > lying_sine) continue;
         const bool stands = tilt <= standing_tilt;
         const Vec3 first = stands ? Vec3(Vec3::UnitX()) : deepest, second(-first[1], first[0], 0);
         if (stands) put(1, first);

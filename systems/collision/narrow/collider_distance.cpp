@@ -43,57 +43,57 @@ SurfacePoint distance_to_box(const Vec3& p, const Vec3& half) {
 }
 
 /// A point in a half plane that is bounded by the axis of a body of revolution.
-struct Flat {
+struct ProfilePoint {
     Real r;  // distance from the axis [m]
     Real z;  // height along the axis [m]
 };
 
-Real norm(const Flat& v) {
+Real norm(const ProfilePoint& v) {
     return std::sqrt(v.r * v.r + v.z * v.z);
 }
 
-struct FlatDistance {
+struct ProfileDistance {
     Real distance;
-    Flat normal;
-    Flat nearest;
+    ProfilePoint normal;
+    ProfilePoint nearest;
 };
 
 /// Signed distance from the rectangle r0 <= r <= r1, z0 <= z <= z1, the profile of a solid of revolution. For a solid
 /// without a hole, r0 is -infinity. If several sides are equally near, the upper or lower side (an end face) is
 /// preferred.
-FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
+ProfileDistance distance_to_rectangle(const ProfilePoint& p, Real r0, Real r1, Real z0, Real z1) {
     const bool top = p.z >= 0.5 * (z0 + z1);
     const bool outer = r0 == -infinity || p.r >= 0.5 * (r0 + r1);
     const Real beyond_z = top ? p.z - z1 : z0 - p.z;
     const Real beyond_r = outer ? p.r - r1 : r0 - p.r;
     const bool through_end = beyond_z >= beyond_r;
-    const Flat side = through_end ? Flat{0, top ? 1.0 : -1.0} : Flat{outer ? 1.0 : -1.0, 0};
+    const ProfilePoint side = through_end ? ProfilePoint{0, top ? 1.0 : -1.0} : ProfilePoint{outer ? 1.0 : -1.0, 0};
     if (!(beyond_z > 0) && !(beyond_r > 0)) {
         const Real depth = through_end ? beyond_z : beyond_r;
         return {depth, side, {p.r - depth * side.r, p.z - depth * side.z}};
     }
-    const Flat nearest{std::clamp(p.r, r0, r1), std::clamp(p.z, z0, z1)};
-    const Flat offset{p.r - nearest.r, p.z - nearest.z};
+    const ProfilePoint nearest{std::clamp(p.r, r0, r1), std::clamp(p.z, z0, z1)};
+    const ProfilePoint offset{p.r - nearest.r, p.z - nearest.z};
     const Real length = norm(offset);
-    return {length, length > min_length ? Flat{offset.r / length, offset.z / length} : side, nearest};
+    return {length, length > min_length ? ProfilePoint{offset.r / length, offset.z / length} : side, nearest};
 }
 
 /// Half plane that is bounded by the axis (z) of a body of revolution and contains the point p. By symmetry it also
 /// contains the point of the body nearest to p.
 struct AxialFrame {
     Vec3 radial;  // unit vector from the axis to p; +x if p is on the axis
-    Flat p;
+    ProfilePoint p;
 
     explicit AxialFrame(const Vec3& point) {
         const Real r = std::sqrt(point[0] * point[0] + point[1] * point[1]);
         radial = direction_or(Vec3(point[0], point[1], 0), r, Vec3::UnitX());
         p = {r, point[2]};
     }
-    Vec3 lift(const Flat& v) const { return v.r * radial + Vec3(0, 0, v.z); }
-    SurfacePoint lift(const FlatDistance& d) const { return {d.distance, lift(d.normal), lift(d.nearest)}; }
+    Vec3 lift(const ProfilePoint& v) const { return v.r * radial + Vec3(0, 0, v.z); }
+    SurfacePoint lift(const ProfileDistance& d) const { return {d.distance, lift(d.normal), lift(d.nearest)}; }
 };
 
-FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p) {
+ProfileDistance distance_to_bucket_part(const Vec3& size, Index part, const ProfilePoint& p) {
     if (part == 0) return distance_to_rectangle(p, -infinity, size[0] + size[2], -size[2], 0);
     return distance_to_rectangle(p, size[0], size[0] + size[2], -size[2], size[1]);
 }
@@ -101,27 +101,28 @@ FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p
 /// Signed distance from the L-shaped profile of a bucket. Outside of the profile, this is the distance from the nearer
 /// part; inside, it is the distance from the nearest side. If several sides are equally near, the first one in `sides`
 /// is used.
-FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
-    const FlatDistance floor = distance_to_bucket_part(size, 0, p), wall = distance_to_bucket_part(size, 1, p);
+ProfileDistance distance_to_bucket(const Vec3& size, const ProfilePoint& p) {
+    const ProfileDistance floor = distance_to_bucket_part(size, 0, p), wall = distance_to_bucket_part(size, 1, p);
     if (floor.distance > 0 && wall.distance > 0) return floor.distance <= wall.distance ? floor : wall;
 
     const Real inner = size[0], height = size[1], outer = size[0] + size[2], bottom = -size[2];
     struct Side {
-        Flat from, to, normal;
+        ProfilePoint from, to, normal;
     };
     const std::array<Side, 5> sides{{{{0, 0}, {inner, 0}, {0, 1}},
                                      {{inner, 0}, {inner, height}, {-1, 0}},
                                      {{inner, height}, {outer, height}, {0, 1}},
                                      {{outer, bottom}, {outer, height}, {1, 0}},
                                      {{0, bottom}, {outer, bottom}, {0, -1}}}};
-    FlatDistance best{-infinity, {0, 1}, p};
+    ProfileDistance best{-infinity, {0, 1}, p};
     for (const Side& side : sides) {
-        const Flat nearest{std::clamp(p.r, std::min(side.from.r, side.to.r), std::max(side.from.r, side.to.r)),
-                           std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
-        const Flat offset{nearest.r - p.r, nearest.z - p.z};
+        const ProfilePoint nearest{std::clamp(p.r, std::min(side.from.r, side.to.r), std::max(side.from.r, side.to.r)),
+                                   std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
+        const ProfilePoint offset{nearest.r - p.r, nearest.z - p.z};
         const Real length = norm(offset);
         if (!(-length <= best.distance))  // negated, so that a NaN `length` is stored and returned
-            best = {-length, length > min_length ? Flat{offset.r / length, offset.z / length} : side.normal, nearest};
+            best = {-length, length > min_length ? ProfilePoint{offset.r / length, offset.z / length} : side.normal,
+                    nearest};
     }
     return best;
 }

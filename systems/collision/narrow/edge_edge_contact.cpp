@@ -101,7 +101,7 @@ public:
 
     /// True if a point in the given direction from the edge is nearer to the edge than to the two faces of the edge.
     /// `direction`: unit vector perpendicular to the edge.
-    bool faces(const Vec3& direction) const {
+    bool can_touch_along(const Vec3& direction) const {
         if (is_axis_) return true;
         // At a nearly flat edge, directions into the body are also within the limits `border_`, so the sum of the face
         // normals is tested, too.
@@ -127,37 +127,37 @@ private:
 
 }  // namespace
 
-bool edge_faces(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
-                bool nearly_flat) {
+bool edge_can_touch_along(const SurfaceTables& surface, std::span<const Vec3> position, Index edge,
+                          const Vec3& direction, bool nearly_flat) {
     const Wedge wedge(surface, position, edge, 0, nearly_flat);
-    return wedge.convex() && wedge.faces(direction);
+    return wedge.convex() && wedge.can_touch_along(direction);
 }
 
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
-                                  Index second, const PairScale& scale, Real near, Surfaces surfaces) {
+                                  Index second, const PairScale& scale, Real contact_limit, Surfaces surfaces) {
     const auto &ea = surface.edges.node[first], &eb = surface.edges.node[second];
     const Vec3 &a0 = position[ea[0]], &a1 = position[ea[1]], &b0 = position[eb[0]], &b1 = position[eb[1]];
     EdgeEdgeContact contact;
     contact.closest = closest_points_of_segments(a0, a1, b0, b1);
     const Real distance = std::sqrt(contact.closest.distance_squared);
     contact.sleep = distance - scale.edge_depth;
-    if (!contact.closest.interior || !(distance <= std::max(near, scale.edge_depth))) return contact;
+    if (!contact.closest.interior || !(distance <= std::max(contact_limit, scale.edge_depth))) return contact;
 
     // The normal is parallel to the line between the nearest points. It is computed from the directions of the edges,
     // so that it is defined even if the edges touch.
     Vec3 normal = (a1 - a0).cross(b1 - b0).normalized();
     const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
     if (height < 0) normal = -normal;
-    const Real closing = near - scale.contact_distance;
+    const Real closing = contact_limit - scale.contact_distance;
     const Wedge wedge_a(surface, position, first, closing, Wedge::is_axis(surface, second));
     if (!wedge_a.convex()) return contact;
     const Wedge wedge_b(surface, position, second, closing, Wedge::is_axis(surface, first));
     if (!wedge_b.convex()) return contact;
-    if (wedge_b.faces(normal) && wedge_a.faces(-normal)) {
+    if (wedge_b.can_touch_along(normal) && wedge_a.can_touch_along(-normal)) {
         contact.distance = distance;
         contact.normal = normal;
-    } else if (surfaces == Surfaces::may_overlap && distance <= scale.edge_depth && wedge_b.faces(-normal) &&
-               wedge_a.faces(normal)) {
+    } else if (surfaces == Surfaces::may_overlap && distance <= scale.edge_depth && wedge_b.can_touch_along(-normal) &&
+               wedge_a.can_touch_along(normal)) {
         contact.distance = -distance;  // the edges have passed each other
         contact.normal = -normal;
     } else {

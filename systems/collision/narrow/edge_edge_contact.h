@@ -23,17 +23,17 @@ struct EdgeEdgeContact {
 /// Tests two edges for a contact between their interior points. An edge can only touch if the surface is convex at the
 /// edge, and if the contact normal lies between the normals of the two faces of the edge. Otherwise a point and a face
 /// are nearer. Nearly flat edges get no contact, because contacts at the surface's vertices suffice. The axis of a
-/// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both `near` and
+/// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both `contact_limit` and
 /// scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, edges that have passed each
 /// other get a contact, too.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
-                                  Index second, const PairScale& scale, Real near, Surfaces surfaces);
+                                  Index second, const PairScale& scale, Real contact_limit, Surfaces surfaces);
 
 /// True if a convex feature of another object, such as a straight axis or the side of a cylinder, can touch an edge of
 /// a surface: the surface is convex at the edge, and no face at the edge is nearer to the feature. `direction`: unit
 /// vector from the edge to the feature, perpendicular to the edge. `nearly_flat`: true if nearly flat edges can also
 /// touch the feature.
-bool edge_faces(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
-                bool nearly_flat);
+bool edge_can_touch_along(const SurfaceTables& surface, std::span<const Vec3> position, Index edge,
+                          const Vec3& direction, bool nearly_flat);
 
 }  // namespace skerry

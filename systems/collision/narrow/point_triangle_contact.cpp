@@ -35,7 +35,7 @@ struct Query {
     Real distance;  // length of `offset` [m]
 
     const Vec3& at(Index node) const { return position[node]; }
-    Real tie(const Vec3& direction) const {
+    Real border_tolerance(const Vec3& direction) const {
         return (tie_fraction * distance + tie_edge_fraction * scale.edge) * direction.norm();
     }
     /// Unit normal of a triangle; zero if the triangle has no area.
@@ -59,7 +59,7 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
     for (Index n : q.surface.triangles.node[other]) {
         if (n == ends[0] || n == ends[1]) continue;
         const Vec3 into = q.at(n) - q.at(ends[0]);
-        if (q.offset.dot(into) > q.tie(into)) return Vec3::Zero();
+        if (q.offset.dot(into) > q.border_tolerance(into)) return Vec3::Zero();
     }
     return face_normal + q.unit_normal(other);
 }
@@ -112,14 +112,14 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
 }  // namespace
 
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
-                                            const Vec3& point, Index triangle, const PairScale& scale, Real near,
-                                            Surfaces surfaces) {
+                                            const Vec3& point, Index triangle, const PairScale& scale,
+                                            Real contact_limit, Surfaces surfaces) {
     const auto& corner = surface.triangles.node[triangle];
     PointTriangleContact contact;
     contact.closest = closest_point_on_triangle(point, position[corner[0]], position[corner[1]], position[corner[2]]);
     const Real distance = std::sqrt(contact.closest.distance_squared);
     contact.sleep = distance - scale.zone;
-    if (!(distance <= std::max(near, scale.zone))) return contact;
+    if (!(distance <= std::max(contact_limit, scale.zone))) return contact;
 
     const Query q{surface, position, scale, point - contact.closest.nearest, distance};
     if (is_core(corner)) {
@@ -156,16 +156,17 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     } else {
         const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::vertex0);
         if (surface.triangles.owned_vertices[triangle] >> k & 1)
-            touch_border(q,
-                         vertex_normal(q, surface.triangles.vertex[triangle][k],
-                                       [&](const Vec3& side) { return q.offset.dot(side) <= q.tie(side); }),
-                         straight_behind, surfaces, contact);
+            touch_border(
+                q,
+                vertex_normal(q, surface.triangles.vertex[triangle][k],
+                              [&](const Vec3& side) { return q.offset.dot(side) <= q.border_tolerance(side); }),
+                straight_behind, surfaces, contact);
     }
     return contact;
 }
 
-bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                       const Vec3& axis, const PairScale& scale) {
+bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                           const Vec3& offset, const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
     // If the axis tilts by the small angle t, the vector from the vertex to the nearest point p of the axis becomes
     // offset + t * along. Each face at the vertex limits t to angles at which the vertex is nearer to p than the face.
@@ -173,7 +174,7 @@ bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> posit
     const Vec3 along = q.distance * axis.normalized();
     Real low = -axis_tilt, high = axis_tilt;
     const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {
-        const Real room = q.tie(side) - offset.dot(side), slope = along.dot(side);
+        const Real room = q.border_tolerance(side) - offset.dot(side), slope = along.dot(side);
         if (slope > 0)
             high = std::min(high, room / slope);
         else if (slope < 0)
@@ -183,10 +184,11 @@ bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> posit
     return offset.dot(normal) > 0;
 }
 
-bool vertex_holds_place(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                        const PairScale& scale) {
+bool vertex_can_touch_point(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                            const Vec3& offset, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
-    return offset.dot(vertex_normal(q, vertex, [&](const Vec3& side) { return offset.dot(side) <= q.tie(side); })) > 0;
+    return offset.dot(vertex_normal(
+               q, vertex, [&](const Vec3& side) { return offset.dot(side) <= q.border_tolerance(side); })) > 0;
 }
 
 }  // namespace skerry

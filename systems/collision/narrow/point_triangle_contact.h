@@ -32,7 +32,7 @@ struct PointTriangleContact {
 };
 
 /// Tests a point against the part of a triangle that is nearest to it: the face, an edge or a vertex. If the distance
-/// exceeds both `near` and scale.zone, only `closest` and `sleep` are computed.
+/// exceeds both `contact_limit` and scale.zone, only `closest` and `sleep` are computed.
 ///
 /// An edge or vertex belongs to several triangles, but if it is nearest, only one of them reports the contact: the one
 /// with the lowest row. None reports a contact if one of the faces at this edge or vertex is nearer to the point. The
@@ -40,19 +40,19 @@ struct PointTriangleContact {
 /// edge or vertex for an accurate direction, the normal is the mean of the normals of the adjacent faces. The core of a
 /// round body can be touched from all sides.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
-                                            const Vec3& point, Index triangle, const PairScale& scale, Real near,
-                                            Surfaces surfaces);
+                                            const Vec3& point, Index triangle, const PairScale& scale,
+                                            Real contact_limit, Surfaces surfaces);
 
 /// True if a vertex of a surface can touch a capsule or the curved side of a cylinder. Let p be the point of the axis
 /// that is nearest to the vertex. The vertex can touch if no face at the vertex is nearer to p than the vertex is. As a
 /// tolerance, it suffices that this holds for at least one tilt of the axis by at most axis_tilt. `offset`: vector from
 /// the vertex to p [m]. `axis`: direction of the axis.
-bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                       const Vec3& axis, const PairScale& scale);
+bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                           const Vec3& offset, const Vec3& axis, const PairScale& scale);
 
 /// True if a vertex of a surface can touch a point, because no face at the vertex is nearer to this point than the
 /// vertex. `offset`: vector from the vertex to the point [m].
-bool vertex_holds_place(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
-                        const PairScale& scale);
+bool vertex_can_touch_point(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
+                            const Vec3& offset, const PairScale& scale);
 
 }  // namespace skerry

@@ -109,7 +109,7 @@ public:
 
     std::optional<Overlap> find() {
         for (Index k = 0; k < collider_point_count(pair_.geometry.shape); ++k) {
-            if (collider_point_follows(pair_.geometry.shape, k))
+            if (is_moving_rim_point(pair_.geometry.shape, k))
                 add_rim(k);
             else
                 add(collider_point(pair_.geometry, k, Vec3::Zero()));

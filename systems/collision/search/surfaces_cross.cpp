@@ -19,11 +19,16 @@ constexpr Real own_piece_edges = 1;
 
 class CrossingSearch {
 public:
-    /// `own_piece`: features of one body that are at most this far apart at rest belong to one piece of the body and
-    /// are left out [m].
-    CrossingSearch(const CollisionInputs& inputs, PairKind kind, Index first, Index second, Real own_piece,
+    /// `least_rest_distance`: features of one body that are at most this far apart at rest belong to one piece of the
+    /// body and are left out [m].
+    CrossingSearch(const CollisionInputs& inputs, PairKind kind, Index first, Index second, Real least_rest_distance,
                    std::span<const Aabb> box)
-        : inputs_(inputs), kind_(kind), first_(first), second_(second), own_piece_(own_piece), box_(box) {}
+        : inputs_(inputs),
+          kind_(kind),
+          first_(first),
+          second_(second),
+          least_rest_distance_(least_rest_distance),
+          box_(box) {}
 
     /// Calls visit(triangle, side) for each side of a triangle that passes through another triangle, until a call
     /// returns true. Returns true if a call of visit returned true. An edge that two triangles share is visited once
@@ -75,17 +80,19 @@ private:
     }
 
     bool was_far_at_rest(Index point, const std::array<Index, 3>& face) const {
-        return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, point, face) > own_piece_ * own_piece_;
+        return !inputs_.rest_position.empty() &&
+               rest_distance_squared(inputs_, point, face) > least_rest_distance_ * least_rest_distance_;
     }
 
     /// True if an edge pq that passes through a face of its own body counts as a crossing. Both ends must have been far
     /// from the face at rest. Neither end may lie in the plane of the face up to rounding errors, because edges in a
     /// flat side of the body do so without a crossing.
     bool counts_in_self(Index p, Index q, const std::array<Index, 3>& face) const {
-        constexpr Real rounding = 1e-9;  // least height of an end above the plane, as a fraction of own_piece_
+        // least height of an end above the plane, as a fraction of least_rest_distance_
+        constexpr Real rounding = 1e-9;
         const auto& x = inputs_.position;
         const Vec3 &a = x[face[0]], normal = (x[face[1]] - a).cross(x[face[2]] - a);
-        const Real least = rounding * own_piece_ * normal.norm();
+        const Real least = rounding * least_rest_distance_ * normal.norm();
         return std::abs(normal.dot(x[p] - a)) > least && std::abs(normal.dot(x[q] - a)) > least &&
                was_far_at_rest(p, face) && was_far_at_rest(q, face);
     }
@@ -93,26 +100,26 @@ private:
     const CollisionInputs& inputs_;
     const PairKind kind_;
     const Index first_, second_;
-    const Real own_piece_;
+    const Real least_rest_distance_;
     std::span<const Aabb> box_;
 };
 
 }  // namespace
 
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box) {
-    const Real own_piece = 2 * pair.scale.face_depth;  // the limit of was_far_at_rest()
-    return CrossingSearch(inputs, pair.kind, pair.first, pair.second, own_piece, box).any([](Index, std::size_t) {
-        return true;
-    });
+    const Real least_rest_distance = 2 * pair.scale.face_depth;  // the limit of was_far_at_rest()
+    return CrossingSearch(inputs, pair.kind, pair.first, pair.second, least_rest_distance, box)
+        .any([](Index, std::size_t) { return true; });
 }
 
 Index count_self_crossings(const CollisionInputs& inputs, Index body, std::span<const Aabb> box) {
     Index count = 0;
-    const Real own_piece = own_piece_edges * inputs.body.mean_edge[body];
-    CrossingSearch(inputs, PairKind::self, body, body, own_piece, box).any([&](Index owner, std::size_t side) {
-        count += inputs.surface.triangles.owned_edges[owner] >> side & 1;
-        return false;
-    });
+    const Real least_rest_distance = own_piece_edges * inputs.body.mean_edge[body];
+    CrossingSearch(inputs, PairKind::self, body, body, least_rest_distance, box)
+        .any([&](Index owner, std::size_t side) {
+            count += inputs.surface.triangles.owned_edges[owner] >> side & 1;
+            return false;
+        });
     return count;
 }
 

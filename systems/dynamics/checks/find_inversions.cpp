@@ -59,7 +59,7 @@ Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
 }
 
 /// Inversion check of one body in one step.
-struct Body {
+struct BodyCheck {
     const InversionInputs& inputs;
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
@@ -69,7 +69,7 @@ struct Body {
     // (measure_displacement.h) [m].
     Real travel_base;
 
-    Body(const InversionInputs& all_inputs, Real step, Index body)
+    BodyCheck(const InversionInputs& all_inputs, Real step, Index body)
         : inputs(all_inputs),
           h(step),
           reach(step * all_inputs.body_frame_speed[body]),
@@ -102,7 +102,7 @@ struct Body {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
             const Real8 volume = determinant(edges(inputs.tetrahedron_node[b], inputs.position));
             for (std::size_t l = 0; l < element_lanes; ++l)
-                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0) && matters(b, l)) return true;
+                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0) && is_harmful(b, l)) return true;
         }
         return false;
     }
@@ -111,7 +111,7 @@ private:
     /// True for tetrahedra whose inversion matters. Inversion is harmless in tetrahedra that implicit elements cover
     /// (leeway above 1), because implicit elements never make a step unstable. It is also harmless in slivers, whose
     /// volume is negligible.
-    bool matters(std::size_t b, std::size_t l) const {
+    bool is_harmful(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
     }
@@ -141,16 +141,16 @@ private:
             if (reach < safe_distance) return;
             checks_left = checks_at_narrow - 1;
         }
-        find_turned(b, now, part);
+        find_inverting(b, now, part);
     }
 
-    void find_turned(std::size_t b, const LaneMat3<Real8>& now, InversionPart& part) const {
+    void find_inverting(std::size_t b, const LaneMat3<Real8>& now, InversionPart& part) const {
         LaneMat3<Real8> motion = edges(inputs.tetrahedron_node[b], inputs.velocity_next);
         if (!inputs.push_out.empty()) motion = motion + edges(inputs.tetrahedron_node[b], inputs.push_out);
         const Real8 before = determinant(now), after = determinant(now + h * motion);
         const unsigned turned = bits_of((load(inputs.tetrahedron_volume[b]) > 0.0) & (before > 0.0) & ~(after > 0.0));
         for_each_lane(turned, [&](std::size_t l) {
-            part.matters |= matters(b, l);
+            part.is_harmful |= is_harmful(b, l);
             if (part.count++ == 0) part.tetrahedron = static_cast<Index>(b * element_lanes + l);
         });
     }
@@ -188,16 +188,16 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
 void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPart> parts, Real& uninverted_until,
               Inversions& found) {
     const Index body = parts.front().body;
-    bool matters = false;
+    bool is_harmful = false;
     uninverted_until = infinity;
     for (const InversionPart& part : parts) {
         uninverted_until = std::min(uninverted_until, part.uninverted_until);
         if (part.count == 0) continue;
-        matters |= part.matters;
+        is_harmful |= part.is_harmful;
         if (found.count == 0) found = {0, body, part.tetrahedron, false};
         found.count += part.count;
     }
-    if (matters) found.first |= !Body(inputs, h, body).has_inverted(inputs.body_blocks[body]);
+    if (is_harmful) found.is_first_of_body |= !BodyCheck(inputs, h, body).has_inverted(inputs.body_blocks[body]);
 }
 
 }  // namespace
@@ -212,7 +212,7 @@ Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Re
     Column<InversionPart>& parts = memory.part;
     parallel_for(executor, memory.job.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
         for (Index p = memory.job[begin]; p < memory.job[end]; ++p)
-            Body(inputs, h, parts[p].body).check(parts[p], budgets.block_uninverted_until, checks_left);
+            BodyCheck(inputs, h, parts[p].body).check(parts[p], budgets.block_uninverted_until, checks_left);
     });
     Inversions found;
     for (std::size_t first = 0, next = 0; first < parts.size(); first = next) {

@@ -51,7 +51,7 @@ struct Inversions {
     Index tetrahedron = no_index;  // first tetrahedron that the step inverts: lane t % 8 of block t / 8
     // True if a body that had no inverted tetrahedron before the step gets one. Slivers (tetrahedra of negligible
     // volume) and tetrahedra that implicit elements cover do not count.
-    bool first = false;
+    bool is_first_of_body = false;
 };
 
 /// Part of a body that has to be checked for inversions: some of its blocks, and the result of the check.
@@ -61,7 +61,8 @@ struct InversionPart {
     Real uninverted_until = 0;  // travel of the body up to which no tetrahedron of these blocks can invert [m]
     // `count`: number of tetrahedra that the step inverts. `tetrahedron`: the first of them.
     Index count = 0, tetrahedron = no_index;
-    bool matters = false;  // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
+    // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
+    bool is_harmful = false;
 };
 
 /// Working memory of find_inversions, reused in later steps.

@@ -17,14 +17,15 @@ bool is_awake(const ReactionInputs& inputs, Index body) {
 
 /// True for an awake body that is explicit or implicit. The reactions on such a body are measured node by node, those
 /// on a rigid body as a whole (add_rigid_body).
-bool counts(const ReactionInputs& inputs, Index body) {
+bool is_measured_by_node(const ReactionInputs& inputs, Index body) {
     const auto b = static_cast<std::size_t>(body);
     return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
 }
 
 /// True for an attachment that holds all three velocity components of its nodes, on an awake body that is not rigid.
-bool counts(const ReactionInputs& inputs, std::size_t attachment) {
-    return holds_completely(inputs.directions[attachment]) && counts(inputs, inputs.attached_body[attachment]);
+bool holds_measured_nodes(const ReactionInputs& inputs, std::size_t attachment) {
+    return holds_completely(inputs.directions[attachment]) &&
+           is_measured_by_node(inputs, inputs.attached_body[attachment]);
 }
 
 /// Adds the reaction on nodes that are held along single directions: the impulses that hold_axes has applied.
@@ -71,7 +72,7 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
 /// the shape gradients g, and the assumed modulus c (stiffness that the implicit integration assumes). Velocity changes
 /// by damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
-    const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
+    const Real beta = inertia_factor(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);
     for (auto b = static_cast<std::size_t>(inputs.blocks[body].begin);
          b < static_cast<std::size_t>(inputs.blocks[body].end); ++b)
@@ -108,7 +109,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     node_impulse.resize(inputs.position.size());
     // Computes the impulse on each held node. If several attachments hold a node, each of them writes the same value.
     for (std::size_t a = 0; a < count; ++a) {
-        if (!counts(inputs, a)) continue;
+        if (!holds_measured_nodes(inputs, a)) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
              i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
             const auto n = static_cast<std::size_t>(inputs.held[i]);
@@ -120,7 +121,8 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
         // A body is handled once, at its first attachment. Its other attachments may stand anywhere later in the list.
-        bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
+        bool done = body == last || !is_measured_by_node(inputs, body) ||
+                    !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);
         last = body;
@@ -133,7 +135,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     // Attachments are visited in reverse order, so that the impulse of a node goes to the last attachment that holds
     // it.
     for (std::size_t a = count; a-- > 0;) {
-        if (!counts(inputs, a)) continue;
+        if (!holds_measured_nodes(inputs, a)) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
              i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
             const auto n = static_cast<std::size_t>(inputs.held[i]);

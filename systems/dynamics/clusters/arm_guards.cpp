@@ -16,12 +16,13 @@ namespace {
 constexpr Real modulus_at_rest = 0.01;
 
 /// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.
-bool share_chain(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, std::span<const Real> inverse_mass) {
+bool in_one_cluster(ConnectedNodes& connected, const BlockNodes& nodes, std::size_t lane,
+                    std::span<const Real> inverse_mass) {
     Index root = no_index;
     for (Index k = 0; k < nodes.count; ++k) {
         const Index node = nodes.node[k][lane];
         if (!(inverse_mass[static_cast<std::size_t>(node)] > 0)) continue;
-        const Index own = chains.root_of(node);
+        const Index own = connected.root_of(node);
         if (own == no_index || (root != no_index && own != root)) return false;
         root = own;
     }
@@ -44,14 +45,14 @@ void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Rea
     const auto parts =
         elements.part.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
     if (std::ranges::find(parts, ElementPart::guard) == parts.end()) return;
-    NodeChains chains(elements, blocks, out.modulus, inverse_mass);
+    ConnectedNodes connected(elements, blocks, out.modulus, inverse_mass);
     for (std::size_t row = 0; row < parts.size(); ++row) {
         if (parts[row] != ElementPart::guard) continue;
         const std::size_t b = static_cast<std::size_t>(blocks.begin) + row;
         const BlockNodes nodes = elements.nodes_of(b);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Real volume = volume_of(nodes, l);
-            const bool acts = volume > 0 && share_chain(chains, nodes, l, inverse_mass);
+            const bool acts = volume > 0 && in_one_cluster(connected, nodes, l, inverse_mass);
             out.volume[row][l] = acts ? volume : 0;
             out.modulus[row][l] =
                 acts ? std::max(out.modulus[row][l], modulus_at_rest * elements.material_of(b).lame_lambda) : 0;

@@ -71,7 +71,7 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
         for (Eigen::Index i = 0; i < count; ++i)
             A.back()(i, i) = inputs.mass[static_cast<std::size_t>(of_cluster[static_cast<std::size_t>(i)])];
     }
-    const Real beta = inertia_of_stiffness(inputs.body_cluster_step[body]);
+    const Real beta = inertia_factor(inputs.body_cluster_step[body]);
     for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real m) {
         const BlockNodes block_nodes = elements.nodes_of(b);
         const Real weight = beta * m * elements.volume[b][l];
@@ -120,11 +120,11 @@ void keep(const NodeClusters& before, std::size_t c, NodeClusters& clusters) {
 
 ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
                            std::span<const Real> inverse_mass) {
-    NodeChains chains(elements, blocks, modulus, inverse_mass);
+    ConnectedNodes connected(elements, blocks, modulus, inverse_mass);
     ClusterSizes sizes;
-    std::vector<std::size_t> width(chains.chained.begin(), chains.chained.end());
+    std::vector<std::size_t> width(connected.is_connected.begin(), connected.is_connected.end());
     for (std::size_t n = width.size(); n-- > 0;) {
-        const auto root = static_cast<std::size_t>(chains.sets.root(static_cast<Index>(n)));
+        const auto root = static_cast<std::size_t>(connected.sets.root(static_cast<Index>(n)));
         if (root != n) width[root] += std::exchange(width[n], 0);
     }
     for (const std::size_t count : width) {

@@ -20,7 +20,7 @@ struct ClusterInputs {
 
 /// Builds the clusters, which are sets of moving nodes that implicit elements connect, and inverts their inertia
 /// matrices
-///     A_kl = M_kl + beta sum_e c_e V_e g_k.g_l,     beta = (step/1.8)^2 (inertia_of_stiffness()).
+///     A_kl = M_kl + beta sum_e c_e V_e g_k.g_l,     beta = (step/1.8)^2 (inertia_factor()).
 /// M is the diagonal matrix of lumped masses and `step` is body_cluster_step. Implicit element e has the assumed
 /// modulus c_e, the volume V_e, and the shape gradient g_k at node k. Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);

@@ -12,7 +12,7 @@
 namespace skerry {
 
 /// True if the element in lane `l` has a nonzero shape gradient at a node, so that it exerts forces on the node.
-inline bool holds(const ElementGradient& gradient, std::size_t l) {
+inline bool acts_on_node(const ElementGradient& gradient, std::size_t l) {
     return gradient[0][l] != 0 || gradient[1][l] != 0 || gradient[2][l] != 0;
 }
 
@@ -31,20 +31,20 @@ template <class Visit>
 void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real> inverse_mass, Visit&& visit) {
     for (Index k = 0; k < nodes.count; ++k) {
         const Index n = nodes.node[k][l];
-        if (holds(nodes.gradient[k], l) && inverse_mass[static_cast<std::size_t>(n)] > 0) visit(n, k);
+        if (acts_on_node(nodes.gradient[k], l) && inverse_mass[static_cast<std::size_t>(n)] > 0) visit(n, k);
     }
 }
 
 /// Sets of moving nodes that the implicit elements of a body connect. Guards (inversion barriers) are left out, since
 /// they act only inside clusters that other elements form.
-struct NodeChains {
-    Index first = 0;                    // smallest row of NodeTable among the connected nodes
-    UnionFind sets;                     // numbered by row of NodeTable minus `first`
-    std::vector<std::uint8_t> chained;  // 1 for connected nodes; by row of NodeTable minus `first`
+struct ConnectedNodes {
+    Index first = 0;                         // smallest row of NodeTable among the connected nodes
+    UnionFind sets;                          // numbered by row of NodeTable minus `first`
+    std::vector<std::uint8_t> is_connected;  // 1 for connected nodes; by row of NodeTable minus `first`
 
     /// `modulus`: assumed moduli by block; row 0 belongs to the block blocks.begin.
-    NodeChains(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
-               std::span<const Real> inverse_mass) {
+    ConnectedNodes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
+                   std::span<const Real> inverse_mass) {
         std::vector<Index> nodes;
         const auto for_each = [&](auto&& visit) {
             for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
@@ -63,9 +63,9 @@ struct NodeChains {
         const auto ends = std::ranges::minmax(nodes);
         first = ends.min;
         sets.start(static_cast<std::size_t>(ends.max - first) + 1);
-        chained.resize(static_cast<std::size_t>(ends.max - first) + 1);
+        is_connected.resize(static_cast<std::size_t>(ends.max - first) + 1);
         for_each([&](Index before, Index n) {
-            chained[static_cast<std::size_t>(n - first)] = 1;
+            is_connected[static_cast<std::size_t>(n - first)] = 1;
             if (before != no_index) sets.join(before - first, n - first);
         });
     }
@@ -74,7 +74,8 @@ struct NodeChains {
     /// `node`. The root is a row of NodeTable minus `first`.
     Index root_of(Index node) {
         const Index row = node - first;
-        if (row < 0 || row >= static_cast<Index>(chained.size()) || chained[static_cast<std::size_t>(row)] == 0)
+        if (row < 0 || row >= static_cast<Index>(is_connected.size()) ||
+            is_connected[static_cast<std::size_t>(row)] == 0)
             return no_index;
         return sets.root(row);
     }

@@ -61,10 +61,10 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
 
 /// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. At the angular velocity
 /// w the nodes have the velocity field w x r, and the element adds the kinetic energy beta c V |grad(w x r)|^2 / 2 =
-/// beta c V |w|^2, with the assumed modulus c, the volume V, and beta = inertia_of_stiffness(step). The moment is
+/// beta c V |w|^2, with the assumed modulus c, the volume V, and beta = inertia_factor(step). The moment is
 /// therefore 2 beta c V.
 Real added_moment(Real step, Real modulus, Real volume) {
-    return 2 * inertia_of_stiffness(step) * modulus * volume;
+    return 2 * inertia_factor(step) * modulus * volume;
 }
 
 constexpr Real max_volume_fraction = 0.75;  // largest fraction of the volume of a body that may be implicit
@@ -94,15 +94,16 @@ void ImplicitSearch::prepare() {
     marks_.resize(count);  // indexed by row of NodeTable minus first_node_; some rows may be unused
     sum_.resize(count);
     ratio_.resize(count);
-    for (std::vector<ElementLane>* column : {&stiffness_, &unit_, &step_, &measured_step_, &measured_trace_})
+    for (std::vector<ElementLane>* column :
+         {&stiffness_, &weight_per_share_, &step_, &measured_step_, &measured_trace_})
         column->resize(rows);
     list_incidences();
     bounds_.stiffnesses(elements_, blocks_, position_, stiffness_);
     for (std::size_t row = 0; row < rows; ++row) {
         const std::size_t b = row + static_cast<std::size_t>(blocks_.begin);
-        store(stiffness_weight(elements_, b, deformation_of(elements_, b, position_)), unit_[row]);
+        store(stiffness_weight(elements_, b, deformation_of(elements_, b, position_)), weight_per_share_[row]);
         for (std::size_t l = 0; l < element_lanes; ++l)
-            if (out_.mass_share[row][l] > 0) unit_[row][l] /= out_.mass_share[row][l];
+            if (out_.mass_share[row][l] > 0) weight_per_share_[row][l] /= out_.mass_share[row][l];
     }
 }
 
@@ -150,13 +151,14 @@ void ImplicitSearch::measure() {
     for (const Index n : nodes_)
         sum_[static_cast<std::size_t>(n - first_node_)] = stiffness_sum_[static_cast<std::size_t>(n)];
     find_trace(measured_trace_);
-    exact_ = true;
+    step_is_rigorous_ = true;
 }
 
 void ImplicitSearch::estimate() {
-    weight_.resize(unit_.size());
-    for (std::size_t row = 0; row < unit_.size(); ++row)
-        for (std::size_t l = 0; l < element_lanes; ++l) weight_[row][l] = out_.mass_share[row][l] * unit_[row][l];
+    weight_.resize(weight_per_share_.size());
+    for (std::size_t row = 0; row < weight_per_share_.size(); ++row)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            weight_[row][l] = out_.mass_share[row][l] * weight_per_share_[row][l];
     std::ranges::fill(sum_, Real(0));
     for (const Incidence& incidence : incidences_)
         sum_[static_cast<std::size_t>(incidence.node)] += lane_value(weight_, incidence.element) * incidence.size;
@@ -165,7 +167,7 @@ void ImplicitSearch::estimate() {
     for (std::size_t row = 0; row < step_.size(); ++row)
         for (std::size_t l = 0; l < element_lanes; ++l)
             step_[row][l] = measured_step_[row][l] * std::sqrt(measured_trace_[row][l] / present_trace_[row][l]);
-    exact_ = false;
+    step_is_rigorous_ = false;
 }
 
 void ImplicitSearch::mark(std::size_t b, std::size_t l, std::uint8_t bits) {
@@ -212,7 +214,7 @@ ImplicitShare ImplicitSearch::add_implicit(const ImplicitGoal& goal) {
         if (share(b, l) != 0) return;
         implicit_volume += elements_.volume[b][l];
         Real& modulus = out_.modulus[row(b)][l];
-        modulus = goal.headroom * stiffness_[row(b)][l];
+        modulus = goal.stiffness_ratio * stiffness_[row(b)][l];
         added += added_moment(goal.step, modulus, elements_.volume[b][l]);
     });
     ImplicitShare result{.moment = added > 0 ? added / least_moment_ : 0,
@@ -280,7 +282,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
         for_each_element(elements_, blocks_,
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
         all_stable = !(shortest < goal.stable);
-        if (all_stable && exact_) break;
+        if (all_stable && step_is_rigorous_) break;
         if (all_stable) continue;  // the next round confirms the estimate by the rigorous bound
         if (round % rounds_of_sharing == 0) {
             make_unstable_implicit(goal.stable);
@@ -322,7 +324,7 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(elements.volume[b][l] > 0) || out.mass_share[b - first][l] != 0) continue;
             Real& modulus = out.modulus[b - first][l];
-            if (!(modulus > stiffness[l])) modulus = goal.headroom * stiffness[l];
+            if (!(modulus > stiffness[l])) modulus = goal.stiffness_ratio * stiffness[l];
             added += added_moment(goal.step, modulus, elements.volume[b][l]);
         }
     }

@@ -23,8 +23,8 @@ struct ImplicitGoal {
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms
     // (ElementBlockTable::mass_form), which are computed later, will allow longer steps.
     Real stable;
-    Real headroom;    // ratio of assumed to present stiffness of an implicit element, which may stiffen later
-    Real max_moment;  // largest allowed ImplicitShare::moment; the search fails above it
+    Real stiffness_ratio;  // ratio of assumed to present stiffness of an implicit element, which may stiffen later
+    Real max_moment;       // largest allowed ImplicitShare::moment; the search fails above it
     // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. A limit requires
     // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]), because clusters contain only moving nodes.
     std::size_t max_nodes = 0;
@@ -87,7 +87,7 @@ private:
     /// 1, no mass share can make the element stable.
     Real needed_fraction(std::size_t b, std::size_t l, Real step) const;
     /// Computes the data of find() that do not depend on the step length. Mass shares must still have their initial
-    /// values (start_mass_shares()), because unit_ is divided by them and later shares may be 0.
+    /// values (start_mass_shares()), because weight_per_share_ is divided by them and later shares may be 0.
     void prepare();
     void list_incidences();
     /// Computes the stable steps of all elements with their present mass shares by the rigorous bound.
@@ -125,7 +125,7 @@ private:
     std::vector<Incidence> incidences_;
     std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
     std::vector<ElementLane> stiffness_;  // upper bound on the material Hessian in the shape `position_` [Pa]
-    std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its initial mass share
+    std::vector<ElementLane> weight_per_share_;  // stiffness_weight() of an element divided by its initial mass share
     // Values by element: stable step (step_), stable step at the last rigorous bound (measured_step_), trace at that
     // bound (measured_trace_), present trace (present_trace_), stiffness weight (weight_).
     std::vector<ElementLane> step_, measured_step_, measured_trace_, present_trace_, weight_;
@@ -133,7 +133,7 @@ private:
     std::vector<Real> sum_, ratio_;
     std::vector<std::uint8_t> marks_;  // by node
     Real min_needed_fraction_ = 1;
-    bool exact_ = false;  // true if step_ holds the rigorous bound, not an estimate
+    bool step_is_rigorous_ = false;  // true if step_ holds the rigorous bound, not an estimate
 };
 
 /// Makes every explicit element implicit that is unstable at a step of goal.stable. Implicit elements stay implicit,

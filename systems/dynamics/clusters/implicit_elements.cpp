@@ -42,13 +42,13 @@ Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<con
     Real worst = 0;
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const ElementLane& taken = modulus[b - static_cast<std::size_t>(blocks.begin)];
-        if (std::none_of(taken.lane, taken.lane + element_lanes, [](Real m) { return m > 0; })) continue;
+        const ElementLane& assumed = modulus[b - static_cast<std::size_t>(blocks.begin)];
+        if (std::none_of(assumed.lane, assumed.lane + element_lanes, [](Real m) { return m > 0; })) continue;
         const LaneMat3<Real8> F = deformation_of(elements, b, position);
-        if (worst > 0 && less_stiff_than(elements, b, F, load(taken), worst, q)) continue;
+        if (worst > 0 && less_stiff_than(elements, b, F, load(assumed), worst, q)) continue;
         const Real8 stiffness = stiffness_of(elements, b, F, q);
         for (std::size_t l = 0; l < element_lanes; ++l)
-            if (taken[l] > 0) worst = std::max(worst, stiffness[l] / taken[l]);
+            if (assumed[l] > 0) worst = std::max(worst, stiffness[l] / assumed[l]);
     }
     return worst;
 }
@@ -57,12 +57,12 @@ Real added_energy(const ElementInputs& elements, Range blocks, std::span<const E
                   std::span<const Vec3> velocity) {
     Real energy = 0;
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const ElementLane& taken = modulus[b - static_cast<std::size_t>(blocks.begin)];
+        const ElementLane& assumed = modulus[b - static_cast<std::size_t>(blocks.begin)];
         const LaneMat3<Real8> rate = deformation_gradient(elements.nodes_of(b), velocity);
         const Real8 square = inner_product(rate, rate);
-        for (std::size_t l = 0; l < element_lanes; ++l) energy += taken[l] * elements.volume[b][l] * square[l];
+        for (std::size_t l = 0; l < element_lanes; ++l) energy += assumed[l] * elements.volume[b][l] * square[l];
     }
-    return inertia_of_stiffness(step) * energy / 2;
+    return inertia_factor(step) * energy / 2;
 }
 
 Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,

@@ -40,7 +40,7 @@ Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const E
 
 /// Factor beta in the inertia matrix of clusters [s^2]: A = M + beta (sum of assumed element stiffnesses), with the
 /// matrix M of lumped masses. With this beta, steps up to `step` [s] are stable.
-constexpr Real inertia_of_stiffness(Real step) {
+constexpr Real inertia_factor(Real step) {
     // upper bound on circular frequency times step (step_times_frequency); the stability limit is 2
     constexpr Real safety = 1.8;
     return step * step / (safety * safety);

@@ -129,19 +129,19 @@ struct StepForces {
 /// Returns the kinetic energy that the larger inertia adds [J]. `forces`: forces of the step, or null between steps.
 Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
                    const StepForces* forces, const StiffenOutputs& out) {
-    const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);
-    if (all(taken <= 0.0)) return 0;
+    const Real8 one = Real8{} + 1.0, zero{}, assumed = load(out.modulus[b]);
+    if (all(assumed <= 0.0)) return 0;
     const LaneMat3<Real8> F = deformation_of(elements, b, bodies.position);
-    if (all((taken <= 0.0) |
-            (quick_stiffness(elements.material_of(b), inner_product(F, F), determinant(F)) <= near_stiffness * taken)))
+    if (all((assumed <= 0.0) | (quick_stiffness(elements.material_of(b), inner_product(F, F), determinant(F)) <=
+                                near_stiffness * assumed)))
         return 0;
     LaneQuaternion<Real8> q{one, zero, zero, zero};
-    if (less_stiff_than(elements, b, F, taken, too_near, q)) return 0;
-    const Real8 now = stiffness_of(elements, b, F, q);
+    if (less_stiff_than(elements, b, F, assumed, too_near, q)) return 0;
+    const Real8 present = stiffness_of(elements, b, F, q);
     Real energy = 0;
     for (std::size_t l = 0; l < element_lanes; ++l) {
-        if (!(taken[l] > 0) || !(now[l] > too_near * taken[l])) continue;
-        const Real more = raised_to * now[l] - taken[l];
+        if (!(assumed[l] > 0) || !(present[l] > too_near * assumed[l])) continue;
+        const Real more = raised_to * present[l] - assumed[l];
         const Real weight = beta * more * elements.volume[b][l];
         out.modulus[b][l] += more;
         add_to_inverse(elements.nodes_of(b), l, weight, bodies.inverse_mass, out.clusters, out.clusters.inverse.span());
@@ -160,13 +160,13 @@ Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const S
     Real energy = 0;
     for (std::size_t body = 0; body < bodies.body_blocks.size(); ++body) {
         if (!(bodies.body_cluster_step[body] > 0) || bodies.body_asleep[body]) continue;
-        const Real beta = inertia_of_stiffness(bodies.body_cluster_step[body]);
+        const Real beta = inertia_factor(bodies.body_cluster_step[body]);
         const Range blocks = bodies.body_blocks[body];
-        const bool counts = !bodies.ghosts.contain(static_cast<Index>(body));
+        const bool is_owned = !bodies.ghosts.contain(static_cast<Index>(body));
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
             if (!is_due(b)) continue;
             const Real added = stiffen_block(elements, bodies, beta, b, forces, out);
-            if (counts) energy += added;
+            if (is_owned) energy += added;
         }
     }
     return energy;

@@ -25,7 +25,7 @@ constexpr std::size_t blocks_ahead = 6, rows_ahead = 32;
 
 // Size of a local buffer of node positions (16 kB), which stays in the L1 cache. Patches with more nodes use
 // patches.position instead.
-constexpr std::size_t near_nodes = 512;
+constexpr std::size_t nodes_in_buffer = 512;
 
 /// Consecutive blocks of a patch with one material and one part of the stress (ElementPart).
 struct Run {
@@ -138,11 +138,11 @@ struct Run {
 #pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
-                             taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
+                             assumed = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             const auto near_rest =
-                is_small_strain(square, J) & (quick_stiffness(law, material, square, J) <= near_stiffness * taken);
-            easy &= all((taken <= 0.0) | near_rest);
-            any_implicit |= !all(taken <= 0.0);
+                is_small_strain(square, J) & (quick_stiffness(law, material, square, J) <= near_stiffness * assumed);
+            easy &= all((assumed <= 0.0) | near_rest);
+            any_implicit |= !all(assumed <= 0.0);
         }
         return any_implicit && easy;
     }
@@ -166,9 +166,9 @@ struct Run {
     bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const KernelReal taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
-            any |= !all((taken <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
-                                                          determinant(F[part])) <= near_stiffness * taken));
+            const KernelReal assumed = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
+            any |= !all((assumed <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
+                                                            determinant(F[part])) <= near_stiffness * assumed));
         }
         return any;
     }
@@ -271,7 +271,7 @@ struct Run {
     }
 
     /// Adds the forces of the elements of a block to the forces on their nodes. `Q`: stress times minus the volume.
-    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
+    [[gnu::always_inline]] void add_forces(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
         const auto take = [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) __attribute__((always_inline)) {
             if (part == 0) prefetch_row_ahead_of(nodes, k);
@@ -294,7 +294,7 @@ struct Run {
             const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, relaxed);
             const bool has_next = block + 1 < run.end;
             if (ahead && has_next) F = run.fetch(block + 1);
-            run.add(block, Q);
+            run.add_forces(block, Q);
             if (!ahead && has_next) F = run.fetch(block + 1);
         }
     });
@@ -303,7 +303,7 @@ struct Run {
 
 /// Copies the positions of the nodes of a patch to padded rows, and sets the forces on these nodes to zero. `node` must
 /// be ascending.
-void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVec3* to, PaddedVec3* force) {
+void copy_positions(std::span<const Index> node, std::span<const Vec3> position, PaddedVec3* to, PaddedVec3* force) {
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
@@ -342,10 +342,10 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
             const bool idle = is_idle(elements, begin, end);
             if (idle) std::ranges::fill(patches.force.subspan(slot, node.size()), PaddedVec3{});
             if (idle || elements.is_left_out(begin)) continue;
-            std::array<PaddedVec3, near_nodes> near;
-            PaddedVec3 *const x = node.size() <= near_nodes ? near.data() : patches.position.data() + slot,
+            std::array<PaddedVec3, nodes_in_buffer> near;
+            PaddedVec3 *const x = node.size() <= nodes_in_buffer ? near.data() : patches.position.data() + slot,
                               *const force = patches.force.data() + slot;
-            fetch(node, position, x, force);
+            copy_positions(node, position, x, force);
             for (std::size_t b = begin; b < end;) {
                 const std::size_t after = end_of_run(elements, b, end);
                 const MaterialConstants material = elements.material_of(b);

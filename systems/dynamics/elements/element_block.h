@@ -40,19 +40,19 @@ struct PatchRows {
     }
 };
 
-/// Corner: positions of one corner of all elements in a register-wide part of a block, in the order that the transposes
-/// in edge() need. One full-width load per position and a few shuffles replace three gathers, each of which takes one
-/// load per lane.
+/// CornerPositions: positions of one corner of all elements in a register-wide part of a block, in the order that the
+/// transposes in edge() need. One full-width load per position and a few shuffles replace three gathers, each of which
+/// takes one load per lane.
 #ifdef __AVX512VL__
 // Halves of registers are moved with intrinsics, because for __builtin_shufflevector gcc shuffles the whole register.
 
 /// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
-struct Corner {
+struct CornerPositions {
     Real8 pair[4];
 };
 
 template <class Positions>
-[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, Positions position) {
+[[gnu::always_inline]] inline CornerPositions load_corner(const NodeLane& node, std::size_t, Positions position) {
     const auto pair = [&](std::size_t l) {
         return Real8(_mm512_insertf64x4(_mm512_castpd256_pd512(load_position(position + node[l])),
                                         load_position(position + node[l + 4]), 1));
@@ -62,7 +62,7 @@ template <class Positions>
 
 /// Variant of load_corner for a block that contains the last node. The position of this node ends the array, and
 /// load_position() would read beyond the end.
-[[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
+[[gnu::noinline]] inline CornerPositions load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         const Vec3 &a = position[node[l]], &b = position[node[l + 4]];
         return Real8{a[0], a[1], a[2], 0, b[0], b[1], b[2], 0};
@@ -71,7 +71,7 @@ template <class Positions>
 }
 
 /// Position of a corner minus the position of corner 0. Each component holds all lanes.
-[[gnu::always_inline]] inline LaneVec3<Real8> edge(const Corner& corner, const Corner& corner0) {
+[[gnu::always_inline]] inline LaneVec3<Real8> edge(const CornerPositions& corner, const CornerPositions& corner0) {
     const Real8 d04 = corner.pair[0] - corner0.pair[0], d15 = corner.pair[1] - corner0.pair[1];
     const Real8 d26 = corner.pair[2] - corner0.pair[2], d37 = corner.pair[3] - corner0.pair[3];
     // After the transposes, low01 contains x0 x1 z0 z1 x4 x5 z4 z5 and high01 contains y0 y1 .. .. y4 y5 .. .. (letters
@@ -85,12 +85,12 @@ template <class Positions>
             __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
 #else
-struct Corner {
+struct CornerPositions {
     Real4 lane[4];  // x, y, z of a node, then x of the next node
 };
 
 template <class Positions>
-[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, Positions position) {
+[[gnu::always_inline]] inline CornerPositions load_corner(const NodeLane& node, std::size_t part, Positions position) {
     const Index* const corner = node.lane + 4 * part;
     return {{load_position(position + corner[0]), load_position(position + corner[1]),
              load_position(position + corner[2]), load_position(position + corner[3])}};
@@ -98,7 +98,8 @@ template <class Positions>
 
 /// Variant of load_corner for a block that contains the last node. The position of this node ends the array, and
 /// load_position() would read beyond the end.
-[[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
+[[gnu::noinline]] inline CornerPositions load_corner_near_end(const NodeLane& node, std::size_t part,
+                                                              const Vec3* position) {
     const auto at = [&](std::size_t l) {
         const Vec3& p = position[node[4 * part + l]];
         return Real4{p[0], p[1], p[2], 0};
@@ -107,7 +108,7 @@ template <class Positions>
 }
 
 /// Position of a corner minus the position of corner 0. Each component holds all lanes.
-[[gnu::always_inline]] inline LaneVec3<Real4> edge(const Corner& corner, const Corner& corner0) {
+[[gnu::always_inline]] inline LaneVec3<Real4> edge(const CornerPositions& corner, const CornerPositions& corner0) {
     const Real4 d0 = corner.lane[0] - corner0.lane[0], d1 = corner.lane[1] - corner0.lane[1];
     const Real4 d2 = corner.lane[2] - corner0.lane[2], d3 = corner.lane[3] - corner0.lane[3];
     // After the transposes, low01 contains x0 x1 z0 z1 and high01 contains y0 y1 .. .. (letters are components, digits
@@ -156,7 +157,7 @@ template <class Part>
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> edges_of_part(const NodeLane* node, std::size_t part,
                                                                  Positions position, Load&& load_nodes) {
-    const Corner corner0 = load_nodes(node[0], part, position);
+    const CornerPositions corner0 = load_nodes(node[0], part, position);
     return {edge(load_nodes(node[1], part, position), corner0), edge(load_nodes(node[2], part, position), corner0),
             edge(load_nodes(node[3], part, position), corner0)};
 }
@@ -193,7 +194,7 @@ template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
                                                                     Positions position, Load&& load_nodes) {
     const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
-    const Corner anchor = load_nodes(block.node[0], part, position);
+    const CornerPositions anchor = load_nodes(block.node[0], part, position);
     const auto term = [&](Index k) __attribute__((always_inline)) {
         const LaneVec3<KernelReal> d = edge(load_nodes(block.node[k], part, position), anchor), g = gradient(k);
         return LaneMat3<KernelReal>{g.x * d, g.y * d, g.z * d};

@@ -119,14 +119,14 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         // axes of F. `normal` couples the diagonal entries. Other entries are dP_ij = diagonal_part_ij dF_ij +
         // crossed_ij dF_ji.
         const Mat3 normal = weight * tangent.normal;
-        Mat3 diagonal_part = Mat3::Zero(), crossed = Mat3::Zero();
+        Mat3 same_entry = Mat3::Zero(), transposed_entry = Mat3::Zero();
         for (Index i = 0; i < 3; ++i) {
-            diagonal_part(i, i) = normal(i, i);
+            same_entry(i, i) = normal(i, i);
             for (Index j = 0; j < 3; ++j) {
                 if (i == j) continue;
                 const Index pair = 3 - i - j;
-                diagonal_part(i, j) = weight * (tangent.flip[pair] + tangent.twist[pair]) / 2;
-                crossed(i, j) = weight * (tangent.flip[pair] - tangent.twist[pair]) / 2;
+                same_entry(i, j) = weight * (tangent.flip[pair] + tangent.twist[pair]) / 2;
+                transposed_entry(i, j) = weight * (tangent.flip[pair] - tangent.twist[pair]) / 2;
             }
         }
         for (std::size_t k = 0; k < nodes.order_index.size(); ++k)
@@ -134,8 +134,9 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         for (std::size_t k = 0; k < nodes.order_index.size(); ++k)
             for (std::size_t l = 0; l <= k; ++l) {
                 const Vec3 &g = turned_[k], &other = turned_[l];
-                Mat3 block = normal.cwiseProduct(g * other.transpose()) + crossed.cwiseProduct(other * g.transpose());
-                block.diagonal() = diagonal_part * g.cwiseProduct(other);
+                Mat3 block =
+                    normal.cwiseProduct(g * other.transpose()) + transposed_entry.cwiseProduct(other * g.transpose());
+                block.diagonal() = same_entry * g.cwiseProduct(other);
                 block = tangent.left * block * tangent.left.transpose();
                 if (tangent.is_anisotropic)
                     block += weight * anisotropic_block(tangent, nodes.gradient[k], nodes.gradient[l]);

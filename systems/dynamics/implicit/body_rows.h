@@ -24,17 +24,17 @@ struct BodyRows {
     std::size_t order_index(std::size_t n) const { return static_cast<std::size_t>(stiff.order_index(n)); }
 };
 
-/// Coefficient 1 + within d of the masses M in the matrix (1 + within d) M + within^2 K of a step, with the damping
-/// rate d of the material and the stiffness K. `within`: step length times the parameter theta of ImplicitTimes [s].
-Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
+/// Coefficient 1 + theta_h d of the masses M in the matrix (1 + theta_h d) M + theta_h^2 K of a step, with the damping
+/// rate d of the material and the stiffness K. `theta_h`: step length times the parameter theta of ImplicitTimes [s].
+Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real theta_h);
 /// Computes the Cholesky factor of the matrix of a step at small strain, for later calls of stiff.respond(). Returns
 /// false if the matrix cannot be factored.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
-/// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by index in the elimination
-/// order [N s]. M are the node masses. `force`: elastic forces, by the same index [N]; `within`: step length times
+/// Computes the impulses M velocity + theta_h (load - force) on the nodes of a free body, by index in the elimination
+/// order [N s]. M are the node masses. `force`: elastic forces, by the same index [N]; `theta_h`: step length times
 /// theta [s].
-void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
+void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real theta_h,
                      std::span<const Vec3> force, const BodyRows& body, std::span<Vec3> impulse);
 
 /// True if strain counts as large after a step. If it was large in the step, it becomes small only below the limits of

@@ -16,24 +16,25 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
     LargeStep& step = stiff.large_step;
     step.resize(body.count);
     const std::span<const Vec3> displacement = body.rows(bodies.displacement), velocity = body.rows(bodies.velocity);
-    for (std::size_t n = 0; n < body.count; ++n) step.carried[body.order_index(n)] = displacement[n];
-    stiff.set_shape(step.carried);
-    const Real within = theta * h;
+    for (std::size_t n = 0; n < body.count; ++n) step.unmoved_displacement[body.order_index(n)] = displacement[n];
+    stiff.set_shape(step.unmoved_displacement);
+    const Real theta_h = theta * h;
     const Mat3 to_mesh = bodies.turn(r).transpose();
     step.angular_momentum = to_mesh * spins.kicked(r);
     // In a step of length h, Coriolis forces rotate the node velocities by the rotation vector -2 h omega, where omega
     // is the angular velocity of the frame. The exact rotation is applied, because it adds no energy.
     const Mat3 coriolis_rotation =
         rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
-    for (std::size_t n = 0; n < body.count; ++n) step.before[body.order_index(n)] = coriolis_rotation * velocity[n];
-    stiff.remove_momenta(step.before);
-    step.velocity = step.before;
+    for (std::size_t n = 0; n < body.count; ++n)
+        step.velocity_before[body.order_index(n)] = coriolis_rotation * velocity[n];
+    stiff.remove_momenta(step.velocity_before);
+    step.velocity = step.velocity_before;
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
-        step.impulse[k] = stiff.mass(k) * step.before[k];
-        if (!loads.load.empty()) step.impulse[k] += within * (to_mesh * loads.load[body.first_node + n]);
+        step.impulse[k] = stiff.mass(k) * step.velocity_before[k];
+        if (!loads.load.empty()) step.impulse[k] += theta_h * (to_mesh * loads.load[body.first_node + n]);
     }
-    if (!solve_large_step(inertia_of(bodies, r, within), within, stiff)) return false;
+    if (!solve_large_step(inertia_of(bodies, r, theta_h), theta_h, stiff)) return false;
     std::ranges::copy(step.velocity, out.begin());
     return true;
 }
@@ -63,11 +64,11 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     // the step if strain is large, else those of the rest shape.
     for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
     if (is_large) {
-        step.before.resize(body.count);
-        for (std::size_t n = 0; n < body.count; ++n) step.before[body.order_index(n)] = next[n];
+        step.velocity_before.resize(body.count);
+        for (std::size_t n = 0; n < body.count; ++n) step.velocity_before[body.order_index(n)] = next[n];
         stiff.set_shape({displacement_next, stiff.nodes()});
-        stiff.remove_momenta(step.before);
-        for (std::size_t n = 0; n < body.count; ++n) next[n] = step.before[body.order_index(n)];
+        stiff.remove_momenta(step.velocity_before);
+        for (std::size_t n = 0; n < body.count; ++n) next[n] = step.velocity_before[body.order_index(n)];
     } else {
         stiff.remove_rigid_motion(next);
     }
@@ -97,7 +98,7 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
     Real energy = 0;
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
-        const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
+        const Vec3 during = next[n], before = newton ? step.velocity_before[k] : velocity[n];
         next[n] = before + (during - before) / theta;
         // `energy`: work of contacts and loads, computed as in the energy balance that the engine reports, plus the
         // kinetic energy of the deformation at the start of the step [J].
@@ -128,7 +129,7 @@ Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
 void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, StiffBody& stiff,
                   Vec3& moments, Mat3& axes, Mat3& rotation) {
     BodyShape& shape = stiff.large_step.shape;
-    std::vector<Vec3>& rest = stiff.large_step.within;
+    std::vector<Vec3>& rest = stiff.large_step.displacement_in_step;
     if (!large) rest.assign(stiff.size(), Vec3::Zero());
     stiff.find_shape(large ? Displacements(displacement, stiff.nodes()) : Displacements(rest), shape);
     const PrincipalInertia principal(shape.inertia());

@@ -54,7 +54,7 @@ namespace {
 bool becomes_large(const HeldNodes& nodes, const BodyRows& body, std::span<const Vec3> displacement,
                    std::span<const Vec3> velocity, Real h, StiffBody& stiff) {
     if (!stiff.elements().any_nonlinear()) return false;
-    std::vector<Vec3>& at_end = stiff.large_step.within;
+    std::vector<Vec3>& at_end = stiff.large_step.displacement_in_step;
     at_end.resize(body.count);
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
@@ -67,7 +67,7 @@ bool becomes_large(const HeldNodes& nodes, const BodyRows& body, std::span<const
 /// Computes the node velocities of a step at large strain by Newton's method, in the frame of the mesh at the end of
 /// the step, by index in the elimination order. `outer_force(n)`: force on node n in this frame [N]. Returns false if
 /// Newton's method fails.
-bool kick_large(const HeldNodes& nodes, const BodyRows& body, std::size_t r, Real within, auto&& outer_force,
+bool kick_large(const HeldNodes& nodes, const BodyRows& body, std::size_t r, Real theta_h, auto&& outer_force,
                 StiffBody& stiff, std::span<Vec3> out) {
     LargeStep& step = stiff.large_step;
     step.resize(body.count);
@@ -76,11 +76,11 @@ bool kick_large(const HeldNodes& nodes, const BodyRows& body, std::size_t r, Rea
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
         const Vec3 before = nodes.frame.across * velocity[n];
-        step.carried[k] = nodes.frame.carried(nodes.arm(n), displacement[n]);
+        step.unmoved_displacement[k] = nodes.frame.carried(nodes.arm(n), displacement[n]);
         step.velocity[k] = nodes.held(n) ? nodes.prescribed_velocity(n) : before;
-        step.impulse[k] = stiff.mass(k) * before + within * outer_force(n);
+        step.impulse[k] = stiff.mass(k) * before + theta_h * outer_force(n);
     }
-    if (!solve_large_step(inertia_of(nodes.bodies, r, within), within, stiff)) return false;
+    if (!solve_large_step(inertia_of(nodes.bodies, r, theta_h), theta_h, stiff)) return false;
     std::ranges::copy(step.velocity, out.begin());
     return true;
 }
@@ -150,21 +150,22 @@ namespace {
 /// free nodes follow from the change of momentum of these nodes, forces on held nodes from the material laws. The sum
 /// of all forces should be zero, but is not exactly: Newton's method leaves a residual, and the motion by contacts is
 /// computed with the tangent matrix instead of the laws. The missing force is divided equally among the held nodes.
-void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real inertia, Real theta, Real within,
+void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real inertia, Real theta, Real theta_h,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
     LargeStep& step = stiff.large_step;
     const Mat3 to_mesh = nodes.frame.turn.transpose();
     for (std::size_t n = 0; n < body.count; ++n)
-        step.within[body.order_index(n)] = step.carried[body.order_index(n)] + within * next[n];
-    stiff.elements().forces(step.within, force);
+        step.displacement_in_step[body.order_index(n)] =
+            step.unmoved_displacement[body.order_index(n)] + theta_h * next[n];
+    stiff.elements().forces(step.displacement_in_step, force);
     Vec3 missing = Vec3::Zero();
     Real held = 0;
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
         held += nodes.held(n);
         if (!nodes.held(n))
-            force[k] = (step.impulse[k] - inertia * stiff.mass(k) * next[n] + theta * (to_mesh * contact[n])) / within;
+            force[k] = (step.impulse[k] - inertia * stiff.mass(k) * next[n] + theta * (to_mesh * contact[n])) / theta_h;
         missing -= force[k];
     }
     for (std::size_t n = 0; n < body.count; ++n)

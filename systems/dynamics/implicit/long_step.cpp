@@ -45,14 +45,14 @@ bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, s
     std::ranges::fill(step.assumed_impulse, Vec3::Zero());
     if (std::ranges::all_of(left, [](const Vec3& of_node) { return of_node.isZero(0); })) return true;
     // step.assumed_impulse: impulses that cause the velocities step.assumed_velocity. They are the product of these
-    // velocities with the matrix A = inertia M + within^2 K of the long step, with the masses M and the stiffness K.
-    const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
+    // velocities with the matrix A = inertia M + theta_h^2 K of the long step, with the masses M and the stiffness K.
+    const Real theta_h = times.theta * times.length, inertia = inertia_of(bodies, r, theta_h);
     for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = step.assumed_velocity[n];
     body.stiff.elastic_forces(impulse, elastic_force);
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
         step.assumed_impulse[n] =
-            inertia * stiff.mass(k) * step.assumed_velocity[n] + within * within * elastic_force[k];
+            inertia * stiff.mass(k) * step.assumed_velocity[n] + theta_h * theta_h * elastic_force[k];
     }
     return true;
 }
@@ -75,8 +75,8 @@ bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads,
     const BodyRows body(bodies, stiff, r);
     const std::span<const Vec3> displacement = body.rows(bodies.displacement);
     const Real time = time_at_end(step, times), remaining_share = 1 - time / times.length;
-    step.weight = time / times.h;
-    step.rests = false;
+    step.response_factor = time / times.h;
+    step.asleep = false;
     for (std::size_t n = 0; n < body.count; ++n) {
         const Vec3 during =
             step.free_velocity[n] + step.contact_velocity[n] + remaining_share * step.assumed_velocity[n];
@@ -87,8 +87,8 @@ bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads,
 
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff) {
     stiff.long_step.done = 0;
-    stiff.long_step.weight = times.length > 0 ? 1 : 0;
-    stiff.long_step.rests = true;
+    stiff.long_step.response_factor = times.length > 0 ? 1 : 0;
+    stiff.long_step.asleep = true;
 }
 
 Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
@@ -101,7 +101,7 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
                                 contact = body.rows(out.contact_impulse);
     const Mat3 to_mesh = bodies.turn(r).transpose();
     const Real time = time_at_end(step, times), share = time / times.length, remaining_share = 1 - share;
-    const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
+    const Real theta_h = times.theta * times.length, inertia = inertia_of(bodies, r, theta_h);
     Real damped = 0;    // reported work of contacts and loads minus the growth of energy [J]
     Real at_start = 0;  // rate of change of the elastic energy at the start of the long step [W]
     Real impulse_energy = 0, inertia_energy = 0;  // [J]
@@ -129,11 +129,11 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         next[n] = after;
     }
     // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
-    // stiffness K. The long step has the matrix A = inertia M + within^2 K with the masses M. So v.K v follows from
+    // stiffness K. The long step has the matrix A = inertia M + theta_h^2 K with the masses M. So v.K v follows from
     // v.M v and from the known impulses A v.
     step.elastic_next = 0;
     for (std::size_t n = 0; n < body.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
-    step.elastic_next += time * at_start + time * time / 2 * (impulse_energy - inertia_energy) / (within * within);
+    step.elastic_next += time * at_start + time * time / 2 * (impulse_energy - inertia_energy) / (theta_h * theta_h);
     return damped - (step.elastic_next - step.elastic);
 }
 
@@ -143,12 +143,12 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         const Range rows = body_implicit[static_cast<std::size_t>(body[r])];
         if (rows.size() == 0) continue;
         LongStep& step = stiff[r].long_step;
-        if (step.rests) continue;
-        const std::span<Vec3> body_velocity =
+        if (step.asleep) continue;
+        const std::span<Vec3> body_displacement =
             left.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-        if (!(step.weight > 0)) {
+        if (!(step.response_factor > 0)) {
             step.done = 0;
-            std::ranges::fill(body_velocity, Vec3::Zero());
+            std::ranges::fill(body_displacement, Vec3::Zero());
             continue;
         }
         step.done = time_at_end(step, times);
@@ -160,8 +160,8 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         // a long step [m]. The next long step first assumes that contacts cause this velocity again.
         // step.contact_velocity contains only the contacts in the elapsed time step.done of the long step. The factor
         // times.length / step.done extends it to the complete long step.
-        for (std::size_t n = 0; n < body_velocity.size(); ++n)
-            body_velocity[n] = times.length * (times.length / step.done) * step.contact_velocity[n];
+        for (std::size_t n = 0; n < body_displacement.size(); ++n)
+            body_displacement[n] = times.length * (times.length / step.done) * step.contact_velocity[n];
     }
 }
 

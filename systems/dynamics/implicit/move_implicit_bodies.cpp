@@ -27,7 +27,7 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
 bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, const Vec3& angular_momentum,
                    Real h, const BodyRows& body, StiffBody& stiff) {
     if (!stiff.elements().any_nonlinear()) return false;
-    std::vector<Vec3>& at_end = stiff.large_step.within;
+    std::vector<Vec3>& at_end = stiff.large_step.displacement_in_step;
     at_end.resize(body.count);
     for (std::size_t n = 0; n < body.count; ++n)
         at_end[body.order_index(n)] = displacement[n] + h * velocity[body.order_index(n)];
@@ -45,27 +45,27 @@ void keep_spins(const ImplicitBodies& bodies, const ImplicitSpins& spins, const 
 
 }  // namespace
 
-void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
+void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real theta_h,
                      std::span<const Vec3> force, const BodyRows& body, std::span<Vec3> impulse) {
     const std::span<const Vec3> velocity = body.rows(bodies.velocity);
     const Mat3 turn = bodies.turn(r);
     for (std::size_t n = 0; n < body.count; ++n) {
         const std::size_t k = body.order_index(n);
         impulse[k] = body.stiff.mass(k) * velocity[n];
-        impulse[k] -= within * force[k];
-        if (!loads.load.empty()) impulse[k] += within * (turn.transpose() * loads.load[body.first_node + n]);
+        impulse[k] -= theta_h * force[k];
+        if (!loads.load.empty()) impulse[k] += theta_h * (turn.transpose() * loads.load[body.first_node + n]);
     }
 }
 
-Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within) {
-    return 1 + within * bodies.damping(r);
+Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real theta_h) {
+    return 1 + theta_h * bodies.damping(r);
 }
 
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum,
                     const BodyRows& body, StiffBody& stiff) {
     if (was_large || stiff.is_tangent()) return !stiff.becomes_small(displacement, angular_momentum);
     if (!stiff.elements().any_nonlinear()) return false;
-    std::vector<Vec3>& at_end = stiff.large_step.within;
+    std::vector<Vec3>& at_end = stiff.large_step.displacement_in_step;
     at_end.resize(body.count);
     for (std::size_t n = 0; n < body.count; ++n) at_end[body.order_index(n)] = displacement[n];
     return stiff.becomes_large_in_order(at_end, angular_momentum);
@@ -78,8 +78,8 @@ bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta
     int exponent = 0;
     const Real fraction = std::frexp(h, &exponent);
     const Real rounded = std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
-    const Real within = theta * rounded;
-    return stiff.prepare(inertia_of(bodies, r, within), within * within);
+    const Real theta_h = theta * rounded;
+    return stiff.prepare(inertia_of(bodies, r, theta_h), theta_h * theta_h);
 }
 
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
@@ -95,8 +95,8 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         stiff[r].forget_tangent();
         stiff[r].large_step.counts = {};
         stiff[r].large_step.failed = false;
-        stiff[r].long_step.weight = 0;
-        stiff[r].long_step.rests = false;
+        stiff[r].long_step.response_factor = 0;
+        stiff[r].long_step.asleep = false;
         if (times.starts) stiff[r].long_step.done = 0;
         if (bodies.asleep(r)) {
             rest_in_long_step(times, stiff[r]);
@@ -120,7 +120,7 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         }
         large = large || (sound && becomes_large(displacement, impulse, bodies.turn(r).transpose() * spins.kicked(r), h,
                                                  body, stiff[r]));
-        if (large) stiff[r].long_step.weight = 0;
+        if (large) stiff[r].long_step.response_factor = 0;
         if (large) sound = kick_large_free_body(bodies, loads, spins, r, h, theta, stiff[r], impulse);
         if (!sound)  // velocities of NaN make the engine refuse the step
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
@@ -171,7 +171,7 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const std::span<const Index> nodes = coupling.nodes[r];
         if (nodes.empty()) return;
-        const Real weight = stiff[r].long_step.weight;
+        const Real weight = stiff[r].long_step.response_factor;
         if (!stiff[r].is_tangent()) make_factor(bodies, r, weight > 0 ? times.length : times.h, times.theta, stiff[r]);
         coupling.turn[r] = bodies.holds.hold(r) ? HeldFrame(bodies, r, times.h).turn : bodies.turn(r);
         coupling.impulse_turn[r] = (weight > 0 ? weight * times.theta : times.theta) * coupling.turn[r].transpose();
@@ -219,7 +219,7 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             for (std::size_t n = 0; n < body.count; ++n) impulse[body.order_index(n)] = theta * (to_mesh * contact[n]);
             body.stiff.respond(impulse);
         }
-        if (stiff[r].long_step.weight > 0 && !bodies.asleep(r)) {
+        if (stiff[r].long_step.response_factor > 0 && !bodies.asleep(r)) {
             if (!any_contact) std::ranges::fill(impulse, Vec3::Zero());
             parts[r].damped = strain_in_long_step(bodies, loads, r, times, stiff[r], impulse, out);
             if (is_large_after(false, displacement_next, to_mesh * spins.after(r), body, stiff[r]))

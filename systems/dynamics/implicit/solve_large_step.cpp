@@ -10,35 +10,35 @@ namespace skerry {
 namespace {
 
 /// Function of the node velocities v whose minimum is the solution of the step: inertia v.M v / 2 - v.impulse +
-/// U(carried + within v). M are the node masses; `impulse` and `carried` are members of LargeStep. U is the elastic
-/// energy. For a free body U also contains the energy of the spin, L.I^-1 L / 2, with the constant angular momentum L
-/// and the inertia I of the deformed shape.
+/// U(unmoved_displacement + theta_h v). M are the node masses; `impulse` and `unmoved_displacement` are members of
+/// LargeStep. U is the elastic energy. For a free body U also contains the energy of the spin, L.I^-1 L / 2, with the
+/// constant angular momentum L and the inertia I of the deformed shape.
 class Objective {
 public:
-    Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
+    Objective(Real inertia, Real theta_h, const StiffBody& stiff, LargeStep& step)
         : inertia_(inertia),
-          within_(within),
+          theta_h_(theta_h),
           stiff_(stiff),
           step_(step),
           spins_(!stiff.is_held() && !step.angular_momentum.isZero(0)) {}
 
     /// Value of the function at step_.velocity + along step_.direction [J]. Writes the displacements for this velocity
-    /// to step_.within.
+    /// to step_.displacement_in_step.
     Real at(Real along) {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) {
             const Vec3 velocity = step_.velocity[k] + along * step_.direction[k];
-            step_.within[k] = step_.carried[k] + within_ * velocity;
+            step_.displacement_in_step[k] = step_.unmoved_displacement[k] + theta_h_ * velocity;
             if (!stiff_.holds(k)) sum += velocity.dot(inertia_ / 2 * stiff_.mass(k) * velocity - step_.impulse[k]);
         }
-        return sum + stiff_.elements().energy(step_.within) + spin_energy();
+        return sum + stiff_.elements().energy(step_.displacement_in_step) + spin_energy();
     }
 
     /// Computes the forces at the displacements step_.within, the gradient g of the function to be minimised, and the
     /// next Newton direction with the present factor of the matrix A. Returns the squared Newton decrement g.A^-1 g
     /// [J].
     Real evaluate() {
-        stiff_.elements().forces(step_.within, step_.force);
+        stiff_.elements().forces(step_.displacement_in_step, step_.force);
         if (spins_) {
             const Vec3 spin = step_.shape.inertia().ldlt().solve(step_.angular_momentum);
             for (std::size_t k = 0; k < step_.velocity.size(); ++k)
@@ -46,7 +46,7 @@ public:
         }
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             step_.gradient[k] =
-                inertia_ * stiff_.mass(k) * step_.velocity[k] + within_ * step_.force[k] - step_.impulse[k];
+                inertia_ * stiff_.mass(k) * step_.velocity[k] + theta_h_ * step_.force[k] - step_.impulse[k];
         return solve_direction();
     }
 
@@ -65,7 +65,7 @@ public:
     Real force_energy() const {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
-            if (!stiff_.holds(k)) sum += (within_ * step_.force[k]).squaredNorm() / (2 * stiff_.mass(k));
+            if (!stiff_.holds(k)) sum += (theta_h_ * step_.force[k]).squaredNorm() / (2 * stiff_.mass(k));
         return sum;
     }
 
@@ -74,7 +74,7 @@ public:
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             if (!stiff_.holds(k)) sum += stiff_.mass(k) * step_.velocity[k].squaredNorm() / 2;
-        return sum + stiff_.elements().energy(step_.within) + spin_energy();
+        return sum + stiff_.elements().energy(step_.displacement_in_step) + spin_energy();
     }
 
 private:
@@ -82,17 +82,17 @@ private:
     /// negative gradient is the centrifugal force.
     Real spin_energy() const {
         if (!spins_) return 0;
-        stiff_.find_shape(step_.within, step_.shape);
+        stiff_.find_shape(step_.displacement_in_step, step_.shape);
         return step_.angular_momentum.dot(step_.shape.inertia().ldlt().solve(step_.angular_momentum)) / 2;
     }
 
-    Real inertia_, within_;
+    Real inertia_, theta_h_;
     const StiffBody& stiff_;
     LargeStep& step_;
     bool spins_;
 };
 
-bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
+bool find_velocity(Real inertia, Real theta_h, StiffBody& stiff) {
     // Limits of Newton's method. It ends when the Newton decrement is at most `close` times its first value, or when
     // the squared decrement is at most `rounding` times the sum of all energies. A new matrix factor is computed if an
     // iteration leaves more than the fraction `slow_decrease` of the decrement.
@@ -101,12 +101,12 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
     LargeStep& step = stiff.large_step;
     step.counts = {.solved = 1};
     std::ranges::fill(step.direction, Vec3::Zero());
-    Objective objective(inertia, within, stiff, step);
+    Objective objective(inertia, theta_h, stiff, step);
     Real value = objective.at(0);
     const Real size = objective.size();
     const auto factor = [&] {
         ++step.counts.factors;
-        return stiff.prepare_tangent(inertia, within * within, step.within);
+        return stiff.prepare_tangent(inertia, theta_h * theta_h, step.displacement_in_step);
     };
     if (!std::isfinite(value) || !factor()) return false;
     Real decrement = objective.evaluate();
@@ -140,8 +140,8 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
 
 }  // namespace
 
-bool solve_large_step(Real inertia, Real within, StiffBody& stiff) {
-    stiff.large_step.failed = !find_velocity(inertia, within, stiff);
+bool solve_large_step(Real inertia, Real theta_h, StiffBody& stiff) {
+    stiff.large_step.failed = !find_velocity(inertia, theta_h, stiff);
     return !stiff.large_step.failed;
 }
 

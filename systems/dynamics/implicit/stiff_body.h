@@ -34,24 +34,26 @@ struct NewtonCounts {
 /// (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
     // displacements at the end of the step if the nodes do not move in it, in the frame at the end of the step [m]
-    std::vector<Vec3> carried;
+    std::vector<Vec3> unmoved_displacement;
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
-    std::vector<Vec3> force;     // gradient dU/du of U (elastic energy plus energy of the spin) at `within` [N]
+    // gradient dU/du of U (elastic energy plus energy of the spin) at `displacement_in_step` [N]
+    std::vector<Vec3> force;
     // velocities at the start of the step without rigid motion, rotated by Coriolis forces [m/s]
-    std::vector<Vec3> before;
+    std::vector<Vec3> velocity_before;
     // Newton's method: gradient [N s], search direction [m/s], and the displacements at which forces are computed [m].
-    std::vector<Vec3> gradient, direction, within;
+    std::vector<Vec3> gradient, direction, displacement_in_step;
     // Angular momentum of a free body in the frame of its mesh; zero for a held body [kg m^2/s].
     Vec3 angular_momentum = Vec3::Zero();
-    // Shape with the displacements `within`, set only if angular_momentum is not zero. Between steps it is work memory.
+    // Shape with the displacements `displacement_in_step`, set only if angular_momentum is not zero. Between steps it
+    // is work memory.
     BodyShape shape;
     NewtonCounts counts;
     bool failed = false;  // true if Newton's method found no velocity
 
     void resize(std::size_t count) {
-        for (std::vector<Vec3>* column :
-             {&carried, &impulse, &velocity, &force, &before, &gradient, &direction, &within})
+        for (std::vector<Vec3>* column : {&unmoved_displacement, &impulse, &velocity, &force, &velocity_before,
+                                          &gradient, &direction, &displacement_in_step})
             column->resize(count);
         angular_momentum.setZero();
     }
@@ -63,8 +65,8 @@ struct LongStep {
     Real done = 0;  // elapsed time of the long step; 0 outside of a long step [s]
     // Time from the start of the long step to the end of this short step, divided by the length of this short step. It
     // is a factor on the response to contacts. 0 in an ordinary step.
-    Real weight = 0;
-    bool rests = false;  // true if the body is asleep in this short step
+    Real response_factor = 0;
+    bool asleep = false;  // true if the body is asleep in this short step
     // Values at the start of the long step:
     std::vector<Vec3> start, start_velocity;  // [m], [m/s]
     std::vector<Vec3> start_force;            // elastic forces K u at the displacements `start` [N]

@@ -8,7 +8,7 @@ namespace {
 
 /// Twice the mean velocity of a body in this step: the sum of its velocities before and after the step, at the point of
 /// a joint block [m/s]. For a block of rotations: the sum of its angular velocities before and after the step [rad/s].
-Vec3 twice_mean(const JointWorkInputs& joints, const JointBlock& block, Index body) {
+Vec3 velocity_sum(const JointWorkInputs& joints, const JointBlock& block, Index body) {
     const auto r = static_cast<std::size_t>(body);
     const Vec3 angular = 2 * joints.angular_momentum[r] + joints.moment_kick[r] + joints.contact_moment[r];
     const Vec3 spin = joints.inverse_inertia[r] * angular;
@@ -26,8 +26,8 @@ JointMeasures measure_joints(const JointWorkInputs& joints) {
         const Vec3 impulse = block.frame * joints.impulse[i];
         const bool first = block.first_node != no_index, second = block.second_node != no_index;
         if ((first || second) && joints.ghosts.contain(joints.body[first ? block.first : block.second])) continue;
-        if (first) sum.work += impulse.dot(twice_mean(joints, block, block.first)) / 2;
-        if (second) sum.work -= impulse.dot(twice_mean(joints, block, block.second)) / 2;
+        if (first) sum.work += impulse.dot(velocity_sum(joints, block, block.first)) / 2;
+        if (second) sum.work -= impulse.dot(velocity_sum(joints, block, block.second)) / 2;
         if (!block.turning && first != second) sum.impulse += first ? impulse : Vec3(-impulse);
     }
     return sum;

@@ -52,7 +52,7 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
 /// so any point will do. For a hinge any point on its axis will do. The point nearest to the centre of mass is used,
 /// because velocity and spin are coupled least there. If both bodies move, their centres of mass are replaced by the
 /// mean of both, weighted by the sums of their inverse principal moments of inertia.
-Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first, const JointPlace& second) {
+Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPose& first, const JointPose& second) {
     if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
     Vec3 sum = Vec3::Zero();
     Real weights = 0;
@@ -74,8 +74,8 @@ struct MimicAxis {
     Real coordinate;
 
     MimicAxis(const JointInputs& joints, std::size_t j, bool leads, Real coefficient) {
-        const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
-                         second = joints.place(joints.second[j], joints.second_frame[j]);
+        const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
+                        second = joints.place(joints.second[j], joints.second_frame[j]);
         coordinate = joint_coordinate(joints.kind[j], first, second, joints.coordinate[j]);
         block = {.joint = static_cast<Index>(j),
                  .turning = joints.kind[j] == JointKind::hinge,
@@ -109,7 +109,7 @@ void add_mimic(const JointInputs& joints, std::size_t j, Real kick, JointBlockTa
 
 }  // namespace
 
-JointPlace JointInputs::place(Index body, const JointFrame& frame) const {
+JointPose JointInputs::place(Index body, const JointFrame& frame) const {
     if (body == no_index) return {frame.point, frame.axes};
     const auto r = static_cast<std::size_t>(rigid(body));
     const Mat3 from_mesh = rotation[r] * axes[r].transpose();
@@ -128,7 +128,7 @@ Real JointInputs::mean_target(std::size_t j, Real t, Real h) const {
     return keys_of(j).empty() ? motor[j].target : mean_value(keys_of(j), t, h);
 }
 
-Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before) {
+Real joint_coordinate(JointKind kind, const JointPose& first, const JointPose& second, Real before) {
     if (kind == JointKind::slider) return second.axes.col(2).dot(first.point - second.point);
     if (kind != JointKind::hinge) return 0;
     constexpr Real turn = 2 * std::numbers::pi;
@@ -146,8 +146,8 @@ bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointB
         blocks.resting[j] = joints.rests(j);
         if (blocks.resting[j]) continue;
         const JointKind kind = joints.kind[j];
-        const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
-                         second = joints.place(joints.second[j], joints.second_frame[j]);
+        const JointPose first = joints.place(joints.first[j], joints.first_frame[j]),
+                        second = joints.place(joints.second[j], joints.second_frame[j]);
         blocks.coordinate[j] = joint_coordinate(kind, first, second, joints.coordinate[j]);
         JointBlock block{.joint = static_cast<Index>(j),
                          .turning = false,

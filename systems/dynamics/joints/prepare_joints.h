@@ -11,7 +11,7 @@
 namespace skerry {
 
 /// Present pose of a joint frame in world coordinates. The frame is fixed to one body of the joint, or to the world.
-struct JointPlace {
+struct JointPose {
     Vec3 point;
     Mat3 axes;
 };
@@ -90,7 +90,7 @@ struct JointInputs {
         };
         return !body_asleep.empty() && is_out(first[j]) && is_out(second[j]);
     }
-    JointPlace place(Index body, const JointFrame& frame) const;
+    JointPose place(Index body, const JointFrame& frame) const;
     /// Target of the motor of joint `j` at time `t`: a speed or a position, with the unit of JointMotorRow::target.
     Real target(std::size_t j, Real t) const;
     /// True if joint `j` has a motor whose target changes in the step of length `h` that starts at time `t`.
@@ -102,7 +102,7 @@ struct JointInputs {
 
 /// Displacement of a slider [m] or angle of a hinge [rad] between the joint frames of the two bodies; 0 for other kinds
 /// of joints. Full rotations of a hinge are counted: the result is the angle nearest to `before`.
-Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
+Real joint_coordinate(JointKind kind, const JointPose& first, const JointPose& second, Real before);
 
 /// Writes the constraint blocks (three equations each) of all joints with a moving body, for the step of length `h`
 /// that starts at time `t`. The impulses of the last step serve as the warm start of the solver. `kick`: time for which

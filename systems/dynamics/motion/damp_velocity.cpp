@@ -169,15 +169,15 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
                end = static_cast<std::size_t>(bodies.block_end[block]);
     std::array<Real, nodes_per_block> work;
     SKERRY_CHECK(end - begin <= work.size());
-    Real taken = 0;  // removed kinetic energy, summed in node order [J]
+    Real removed = 0;  // removed kinetic energy, summed in node order [J]
     for (std::size_t first = begin, last = begin; first < end; first = last + 1) {
         for (last = first; last < end && bodies.inverse_mass[last] > 0;) ++last;
         if (last == first) continue;
         damp_free(rigid, last - first, &bodies.position[first], &velocity[first], &bodies.mass[first],
                   &velocity_next[first], work.data());
-        for (std::size_t n = 0; n < last - first; ++n) taken += work[n];
+        for (std::size_t n = 0; n < last - first; ++n) removed += work[n];
     }
-    return taken;
+    return removed;
 }
 
 }  // namespace
@@ -205,9 +205,9 @@ bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<co
             const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
             if (!is_damped(bodies, body)) continue;
             const NodeBlockSums& total = sums[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)];
-            const Real taken =
+            const Real removed =
                 damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * kick), total, velocity, velocity_next);
-            if (!bodies.ghosts.contain(static_cast<Index>(body))) sums[b].dissipated = taken;
+            if (!bodies.ghosts.contain(static_cast<Index>(body))) sums[b].dissipated = removed;
         }
     });
     for (const NodeBlockSums& block : sums) dissipated += block.dissipated;

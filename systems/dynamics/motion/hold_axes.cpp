@@ -55,13 +55,13 @@ bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts
     // Lower limit on the share of the mobility (inverse mass) along the normal that the held directions leave to the
     // nodes. Below this limit the gap counts as unable to change.
     constexpr Real least_share = 1e-6;
-    Real all = 0, left = 0;
+    Real all = 0, free_mobility = 0;
     for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {
         const Real mobility = weight * weight * inputs.inverse_mass[n];
         all += mobility;
-        left += mobility * (1 - contacts.normal[c].dot(node[n].held * contacts.normal[c]));
+        free_mobility += mobility * (1 - contacts.normal[c].dot(node[n].held * contacts.normal[c]));
     });
-    return left > least_share * all;
+    return free_mobility > least_share * all;
 }
 
 /// Key of the row that holds a node along one direction. These rows are the last rows of ContactTable, which is in key
@@ -86,14 +86,14 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         sum.flow += std::abs(impulse);
         // Work of the holding force: the change of kinetic energy, mass * gained * (held.speed - gained / 2), minus the
         // work of all other forces on the node. The impulse of these other forces is mass * gained - impulse, and their
-        // work is this impulse times `during`: the end velocity, or with leapfrog (lag = 0) the mean velocity.
+        // work is this impulse times `mean_speed`: the end velocity, or with leapfrog (lag = 0) the mean velocity.
         // measure_work counts the work of gravity and loads over h instead of kick, so their work in the time h - kick
         // is subtracted, too.
-        const Real during = lag == 0 ? held.speed - gained / 2 : held.speed;
-        sum.work += impulse * during;
+        const Real mean_speed = lag == 0 ? held.speed - gained / 2 : held.speed;
+        sum.work += impulse * mean_speed;
         if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;
-        sum.work -= (h - kick) * inputs.mass[held.node] * held.direction.dot(inputs.gravity) * during;
-        if (!inputs.load.empty()) sum.work -= (h - kick) * held.direction.dot(inputs.load[held.node]) * during;
+        sum.work -= (h - kick) * inputs.mass[held.node] * held.direction.dot(inputs.gravity) * mean_speed;
+        if (!inputs.load.empty()) sum.work -= (h - kick) * held.direction.dot(inputs.load[held.node]) * mean_speed;
     });
     return all;
 }

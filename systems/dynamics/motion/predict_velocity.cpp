@@ -82,10 +82,10 @@ private:
         const Real gx = nodes.gravity[0], gy = nodes.gravity[1], gz = nodes.gravity[2], h = seconds;
 #pragma omp simd
         for (std::size_t n = 0; n < count; ++n) {
-            const Real m = mass[n], kick = h * inverse_mass[n];
-            next[3 * n] = v[3 * n] + kick * (f[3 * n] + m * gx);
-            next[3 * n + 1] = v[3 * n + 1] + kick * (f[3 * n + 1] + m * gy);
-            next[3 * n + 2] = v[3 * n + 2] + kick * (f[3 * n + 2] + m * gz);
+            const Real m = mass[n], time_over_mass = h * inverse_mass[n];
+            next[3 * n] = v[3 * n] + time_over_mass * (f[3 * n] + m * gx);
+            next[3 * n + 1] = v[3 * n + 1] + time_over_mass * (f[3 * n + 1] + m * gy);
+            next[3 * n + 2] = v[3 * n + 2] + time_over_mass * (f[3 * n + 2] + m * gz);
         }
     }
     [[gnu::always_inline]] void add(std::size_t n, const Vec3& sum) const {

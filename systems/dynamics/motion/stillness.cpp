@@ -37,22 +37,22 @@ public:
         : bodies_(bodies), settings_(settings), body_(body), state_(state) {}
 
     void update(Real h) const {
-        Real& still = state_.still_time[body_];
+        Real& still_time = state_.still_time[body_];
         const Real edge = bodies_.mean_edge[body_];
         if (!(bodies_.max_speed[body_] < limits::speed * std::sqrt(settings_.gravity * edge))) {
-            still = 0;
+            still_time = 0;
             return;
         }
-        if (still == 0) {
+        if (still_time == 0) {
             begin_half();
             state_.drift_before[body_] = state_.creep_before[body_] = 0;
         }
-        const Real half = std::max(settings_.time / 2, h), before = still;
-        still += h;
-        const auto halves = [&](Real time) { return std::floor(time / half); };
-        const auto part = [&](Real time) { return time / half - halves(time); };
-        const bool ends = halves(still) > halves(before);
-        if (!ends && measurements_due(part(still)) == measurements_due(part(before))) return;
+        const Real half_time = std::max(settings_.time / 2, h), before = still_time;
+        still_time += h;
+        const auto halves = [&](Real time) { return std::floor(time / half_time); };
+        const auto part = [&](Real time) { return time / half_time - halves(time); };
+        const bool ends = halves(still_time) > halves(before);
+        if (!ends && measurements_due(part(still_time)) == measurements_due(part(before))) return;
         Real &drift = state_.drift[body_], &shape_drift = state_.shape_drift[body_];
         const Real now = drift_now(), shape_now = shape_distance(positions(), part_of_body(state_.still_position));
         const bool returns = drift < 0 || now < drift, shape_grows = shape_now >= shape_drift;
@@ -60,16 +60,16 @@ public:
         drift = returns ? -furthest : furthest;
         shape_drift = std::max(shape_drift, shape_now);
         if (furthest > limits::drift * edge) {
-            still = 0;
+            still_time = 0;
         } else if (ends) {
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
-            const bool first = before < half;
+            const bool first = before < half_time;
             // A drift that grows with each measurement may be motion at constant speed, on ice or by a motor.
             const bool drift_grows = !returns && furthest > limits::noise * edge;
             if (!first && furthest > limits::growth * least)
-                still = 0;
-            else if (!first && (drift_grows || !is_balanced(half) || !keeps_shape(shape_grows)))
-                still = half;  // this half now counts as the first, with which the next half is compared
+                still_time = 0;
+            else if (!first && (drift_grows || !is_balanced(half_time) || !keeps_shape(shape_grows)))
+                still_time = half_time;  // this half_time now counts as the first, with which the next half_time is compared
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = shape_grows ? shape_drift : 0;
             begin_half();
@@ -80,15 +80,15 @@ private:
     /// True if the mean forces on the nodes, over the last two halves of the sleep time, are in balance without the
     /// damping forces. Damping must not be needed for the balance, because it does not act at rest. The force without
     /// damping on a mass m is m (a + c v) with the acceleration a, the velocity v and the damping rate c. The mean of
-    /// a, with triangular weights over both halves, is (d2 - d1) / half^2, where d1 and d2 are the displacements of the
+    /// a, with triangular weights over both halves, is (d2 - d1) / half_time^2, where d1 and d2 are the displacements of the
     /// node in the two halves. |d2 - d1| is at most the sum of the drifts of both halves.
-    bool is_balanced(Real half) const {
+    bool is_balanced(Real half_time) const {
         // In a body with held nodes damping acts on the complete velocity, else only on the velocity relative to the
         // rigid motion.
         const bool held = bodies_.pinned_count[body_] > 0;
         const Real drift = std::abs(state_.drift[body_]), damped = held ? drift : state_.shape_drift[body_];
-        const Real acceleration = (drift + state_.drift_before[body_]) / (half * half);
-        return acceleration + damping() * damped / half <= limits::imbalance * settings_.gravity;
+        const Real acceleration = (drift + state_.drift_before[body_]) / (half_time * half_time);
+        return acceleration + damping() * damped / half_time <= limits::imbalance * settings_.gravity;
     }
 
     /// True if the shape varies little about a constant shape and does not creep towards a distant shape. If the change

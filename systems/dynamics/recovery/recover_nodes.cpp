@@ -26,13 +26,13 @@ public:
         sum_forces();
         std::vector<SurfaceSearch> searches;
         searches.reserve(plan.faces.size());
-        for (std::size_t row = 0; row < plan.smooth.size(); ++row)
-            if (plan.smooth[row] != no_index) searches.push_back(search_at(row));
+        for (std::size_t row = 0; row < plan.face_of_smooth_node.size(); ++row)
+            if (plan.face_of_smooth_node[row] != no_index) searches.push_back(search_at(row));
         const std::vector<std::optional<Mat3>> gradients = surface_gradients(searches);
-        smooth_values_.reserve(plan.smooth.size());
-        for (std::size_t row = 0; row < plan.smooth.size(); ++row) {
-            const auto f = static_cast<std::size_t>(plan.smooth[row]);
-            if (plan.smooth[row] != no_index && gradients[f]) {
+        smooth_values_.reserve(plan.face_of_smooth_node.size());
+        for (std::size_t row = 0; row < plan.face_of_smooth_node.size(); ++row) {
+            const auto f = static_cast<std::size_t>(plan.face_of_smooth_node[row]);
+            if (plan.face_of_smooth_node[row] != no_index && gradients[f]) {
                 const Mat3& F = *gradients[f];
                 smooth_values_.push_back({stress(searches[f].material, F) * F.transpose() / F.determinant(),
                                           (F.transpose() * F - Mat3::Identity()) / 2});
@@ -89,9 +89,9 @@ private:
     /// part of the force that is due to weight and inertia is subtracted first. This part, divided by the volume of the
     /// node, is taken to be the same as at the inner nodes nearby.
     SurfaceSearch search_at(std::size_t row) const {
-        const auto f = static_cast<std::size_t>(plan_.smooth[row]);
+        const auto f = static_cast<std::size_t>(plan_.face_of_smooth_node[row]);
         const RecoveryPlan::Face& face = plan_.faces[f];
-        const std::span<const Index> rows = plan_.force[f];
+        const std::span<const Index> rows = plan_.force_rows[f];
         Vec3 force = force_[static_cast<std::size_t>(rows.front())], inner_force = Vec3::Zero();
         for (const Index inner : rows.subspan(1)) inner_force += force_[static_cast<std::size_t>(inner)];
         force -= face.inner_share * inner_force;
@@ -108,7 +108,7 @@ private:
     std::span<const Vec3> position_;     // nodes of the body [m]
     std::vector<ElementFields> fields_;  // by place
     std::vector<Vec3> force_;            // by row of a node whose force is needed [N]
-    std::vector<Value> smooth_values_;   // by row of RecoveryPlan::smooth
+    std::vector<Value> smooth_values_;   // by row of RecoveryPlan::face_of_smooth_node
 };
 
 }  // namespace

@@ -135,7 +135,7 @@ private:
         // A quadratic fit needs two samples or more per term. It is not used for stresses of single tetrahedra, which
         // scatter too much.
         constexpr std::size_t enough = 2 * quadratic_terms;
-        smooth_[static_cast<std::size_t>(n)] = static_cast<Index>(plan_.smooth.size());
+        smooth_[static_cast<std::size_t>(n)] = static_cast<Index>(plan_.face_of_smooth_node.size());
         std::vector<Index> strained, volumetric;
         bool smoothed = false;
         const std::vector<Index> elements = near_elements_.around(patches_.tetrahedra(n));
@@ -148,7 +148,7 @@ private:
         // strain.
         const bool is_face = patches_.kind(n) == NodeKind::face &&
                              !body_.elements.material_of(block_of(static_cast<std::size_t>(elements.front()))).yields();
-        plan_.smooth.push_back(is_face ? static_cast<Index>(plan_.faces.size()) : no_index);
+        plan_.face_of_smooth_node.push_back(is_face ? static_cast<Index>(plan_.faces.size()) : no_index);
         if (is_face) {
             append_row<Term>(plan_.strained, mean_of(strained, 1));
             append_row<Term>(plan_.volumetric, mean_of(volumetric, 1));
@@ -209,7 +209,7 @@ private:
             rows.push_back(force_row_[static_cast<std::size_t>(inner)]);
             inner_volume += patches_.node_volume(inner);
         }
-        append_row<Index>(plan_.force, rows);
+        append_row<Index>(plan_.force_rows, rows);
         plan_.faces.push_back({surface_around(body_.surface, patches_.triangles(n), rest_), element,
                                inner_volume > 0 ? patches_.node_volume(n) / inner_volume : 0});
     }
@@ -260,7 +260,8 @@ private:
     const RecoveryMesh& body_;
     std::vector<Vec3> rest_;  // m
     NodePatches patches_;
-    // by node: its row of RecoveryPlan::smooth, or no_index if this row is not needed; 0 until add_smooth sets the row
+    // by node: its row of RecoveryPlan::face_of_smooth_node, or no_index if this row is not needed; 0 until add_smooth
+    // sets the row
     std::vector<Index> smooth_;
     std::vector<std::uint8_t> needed_;  // by tetrahedron: 1 if the elements that cover it are needed
     ElementsNear near_elements_;

@@ -42,8 +42,8 @@ struct RecoveryPlan {
     // `faces`, or no_index. It is no_index for inner nodes, and for nodes of materials that yield. The value at a node
     // without a row of `faces` is a weighted sum of values of the elements around it. The value at any other node of
     // this list is found by Newton's method.
-    std::vector<Index> smooth;
-    // For each row of `smooth`: factors of the elements around its node, by place, ascending. For a node without a row
+    std::vector<Index> face_of_smooth_node;
+    // For each row of `face_of_smooth_node`: factors of the elements around its node, by place, ascending. For a node without a row
     // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
     // Newton's method and replaces its result if the method fails. `strained`: elements with strain. `volumetric`:
     // elements that have only the volumetric part of the stress.
@@ -61,7 +61,7 @@ struct RecoveryPlan {
     Ragged<SurfaceTriangle> triangles;  // by face
     // For each face: numbers (Corner::row) of the nodes whose force is needed; first the number of the face's own node,
     // then the numbers of the inner nodes in the tetrahedra around this node.
-    Ragged<Index> force;
+    Ragged<Index> force_rows;
     /// Corner of an element at a node whose force is needed.
     struct Corner {
         Index element, corner;
@@ -70,8 +70,8 @@ struct RecoveryPlan {
     std::vector<Corner> corners;  // ascending by place
     std::size_t force_count = 0;  // number of nodes whose force is needed
 
-    // For each of `nodes`: its row of `smooth`, or no_index for a node at an edge, corner or interface of materials.
-    // The value of such a node is extrapolated.
+    // For each of `nodes`: its row of `face_of_smooth_node`, or no_index for a node at an edge, corner or interface of
+    // materials. The value of such a node is extrapolated.
     std::vector<Index> smooth_of;
     // Terms of the sums that give the extrapolated values. `donors`: Term::from is a row of `smooth`.
     // `strained_around`, `volumetric_around`: Term::from is a place; these terms are used only for materials with too

@@ -53,30 +53,30 @@ Real modulus_of(const MaterialConstants& material) {
     return 2 * material.shear_modulus + std::abs(material.lame_lambda);
 }
 
-/// Derivative d(P N)/db for F = base + b across^T, with the stress P and the normal N (SurfaceAround in the header).
-/// The function add_stiffness of a material law adds its terms through the member functions.
+/// Derivative d(P N)/db for F = base + b normal_row^T, with the stress P and the normal N (SurfaceAround in the
+/// header). The function add_stiffness of a material law adds its terms through the member functions.
 struct SlopeTerms {
-    LaneVec3<Real8> across, normal;
+    LaneVec3<Real8> normal_row, normal;
     LaneMat3<Real8> sum{};
 
     void add_identity(const Real8& s) {
-        const Real8 x = s * dot(across, normal);
+        const Real8 x = s * dot(normal_row, normal);
         sum.c0.x += x;
         sum.c1.y += x;
         sum.c2.z += x;
     }
     template <class Matrix>
     void add_dyad(const Real8& s, const Matrix& X) {
-        add(s, times(X, normal), times(X, across));
+        add(s, times(X, normal), times(X, normal_row));
     }
     template <class Matrix>
     void add_turned_transpose(const Real8& s, const Matrix& R) {
-        add(s, times(R, across), times(R, normal));
+        add(s, times(R, normal_row), times(R, normal));
     }
     /// Adds s times the derivative of cof(F) N by b. A change u of b changes cof(F) N by the cross product of u and
-    /// F w, where w is the cross product of N and `across`.
+    /// F w, where w is the cross product of N and `normal_row`.
     void add_cofactor_slope(const Real8& s, const LaneMat3<Real8>& F) {
-        const LaneVec3<Real8> w = s * multiply(F, cross(normal, across));
+        const LaneVec3<Real8> w = s * multiply(F, cross(normal, normal_row));
         sum.c0.y -= w.z;
         sum.c0.z += w.y;
         sum.c1.x += w.z;
@@ -105,21 +105,21 @@ template <class Law>
 void search_lanes(Law law, std::span<const SurfaceSearch> searches, std::span<std::optional<Mat3>> found) {
     const MaterialConstants& material = searches.front().material;
     LaneMat3<Real8> base;
-    LaneVec3<Real8> across, normal, traction, b;
+    LaneVec3<Real8> normal_row, normal, traction, b;
     for (int l = 0; l < static_cast<int>(element_lanes); ++l) {
         const SurfaceSearch& search = searches[std::min(static_cast<std::size_t>(l), searches.size() - 1)];
-        const Mat3 own_base = search.stretch * search.around->inverse;
+        const Mat3 own_base = search.area_gradient * search.around->plane_inverse;
         set_lane(base.c0, l, own_base.col(0));
         set_lane(base.c1, l, own_base.col(1));
         set_lane(base.c2, l, own_base.col(2));
-        set_lane(across, l, search.around->across);
+        set_lane(normal_row, l, search.around->normal_row);
         set_lane(normal, l, search.around->normal);
         set_lane(traction, l, search.traction);
         set_lane(b, l, search.start);
     }
     LaneMat3<Real8> F;
     for (int pass = 0; pass < most_newton_passes; ++pass) {
-        F = base + LaneMat3<Real8>{across.x * b, across.y * b, across.z * b};
+        F = base + LaneMat3<Real8>{normal_row.x * b, normal_row.y * b, normal_row.z * b};
         const LaneMat3<Real8> P = whole(law.stress(material, F), F);
         const LaneVec3<Real8> excess = multiply(P, normal) - traction;
         const Real8 limit = newton_accuracy * square_root(inner_product(P, P)) + newton_rounding * modulus_of(material);
@@ -130,7 +130,7 @@ void search_lanes(Law law, std::span<const SurfaceSearch> searches, std::span<st
                 if (converged[l] && J[l] > 0) found[l] = lane_of(F, static_cast<int>(l));
             return;
         }
-        SlopeTerms slope{across, normal};
+        SlopeTerms slope{normal_row, normal};
         law.add_stiffness(material, F, slope);
         const LaneMat3<Real8> cof = cofactor(slope.sum);
         const Real8 inverse = (converged ? Real8{} : Real8{} + 1.0) / dot(slope.sum.c0, cof.c0);
@@ -179,37 +179,37 @@ SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std:
     }
     if (!around.smooth) return around;
     const Eigen::Matrix<Real, 3, 2> plane = plane_of(around.normal);
-    around.inverse = plane * (plane.transpose() * projector * plane).inverse() * plane.transpose();
-    around.across = around.normal - around.inverse * projector * around.normal;
+    around.plane_inverse = plane * (plane.transpose() * projector * plane).inverse() * plane.transpose();
+    around.normal_row = around.normal - around.plane_inverse * projector * around.normal;
     return around;
 }
 
 Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const Vec3> position) {
-    Mat3 stretch = Mat3::Zero();
+    Mat3 area_gradient = Mat3::Zero();
     for (const SurfaceTriangle& triangle : triangles) {
         const Vec3 &x0 = position[static_cast<std::size_t>(triangle.node[0])],
                    &x1 = position[static_cast<std::size_t>(triangle.node[1])],
                    &x2 = position[static_cast<std::size_t>(triangle.node[2])];
-        stretch += triangle.weight *
-                   ((x1 - x0) * triangle.along_first.transpose() + (x2 - x0) * triangle.along_second.transpose());
+        area_gradient += triangle.weight *
+                         ((x1 - x0) * triangle.along_first.transpose() + (x2 - x0) * triangle.along_second.transpose());
     }
-    return stretch;
+    return area_gradient;
 }
 
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
-                                     const Mat3& stretch, const Vec3& traction, const Vec3& start) {
-    const Mat3 base = stretch * around.inverse;
+                                     const Mat3& area_gradient, const Vec3& traction, const Vec3& start) {
+    const Mat3 base = area_gradient * around.plane_inverse;
     const Real modulus = modulus_of(material);
     Vec3 b = start;
     for (int pass = 0; pass < most_newton_passes; ++pass) {
-        const Mat3 F = base + b * around.across.transpose(), P = stress(material, F);
+        const Mat3 F = base + b * around.normal_row.transpose(), P = stress(material, F);
         const Vec3 excess = P * around.normal - traction;
         if (excess.norm() <= newton_accuracy * P.norm() + newton_rounding * modulus)
             return F.determinant() > 0 ? std::optional(F) : std::nullopt;
         const Tangent tangent = skerry::tangent(material, F);
         Mat3 slope;
         for (Index j = 0; j < 3; ++j)
-            slope.col(j) = change_of_stress(tangent, Vec3::Unit(j) * around.across.transpose()) * around.normal;
+            slope.col(j) = change_of_stress(tangent, Vec3::Unit(j) * around.normal_row.transpose()) * around.normal;
         b -= slope.fullPivLu().solve(excess);
         if (!b.allFinite()) break;
     }
@@ -231,8 +231,8 @@ std::vector<std::optional<Mat3>> surface_gradients(std::span<const SurfaceSearch
         if (material.model == MaterialModel::linear) search_lanes(Linear{}, nodes, results);
         for (std::size_t i = 0; i < nodes.size(); ++i)
             if (!results[i])
-                results[i] = surface_gradient(nodes[i].material, *nodes[i].around, nodes[i].stretch, nodes[i].traction,
-                                              nodes[i].start);
+                results[i] = surface_gradient(nodes[i].material, *nodes[i].around, nodes[i].area_gradient,
+                                              nodes[i].traction, nodes[i].start);
     }
     return found;
 }

@@ -27,13 +27,13 @@ struct SurfaceAround {
     Vec3 area = Vec3::Zero();
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
-    // Terms of a least-squares fit for a smooth surface with the normal N: `inverse` and `across`. The fit determines
-    // the deformation gradient F from b = F N. Many F have the same b; F = stretch inverse + b across^T is the one that
+    // Terms of a least-squares fit for a smooth surface with the normal N: `plane_inverse` and `normal_row`. The fit determines
+    // the deformation gradient F from b = F N. Many F have the same b; F = stretch plane_inverse + b normal_row^T is the one that
     // differs least from the deformation gradients within the triangles. `stretch` is the result of surface_stretch().
-    // `inverse` is the inverse, within the tangent plane, of the sum over the triangles of area times projector onto
+    // `plane_inverse` is the plane_inverse, within the tangent plane, of the sum over the triangles of area times projector onto
     // the triangle [1/m^2].
-    Mat3 inverse = Mat3::Zero();
-    Vec3 across = Vec3::Zero();
+    Mat3 plane_inverse = Mat3::Zero();
+    Vec3 normal_row = Vec3::Zero();
 };
 
 /// `triangles`: the triangles around the node. `rest`: rest positions of all nodes [m].
@@ -46,9 +46,9 @@ Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const
 
 /// Deformation gradient F for which P(F) N is the traction, with the first Piola-Kirchhoff stress P and the outward
 /// normal N. Among all such F it is the one that differs least from the deformation gradients within the triangles
-/// (docs/methods/elasticity.md 7.9). `stretch`: result of surface_stretch. `start`: first guess of F N. The surface
-/// must be smooth. Empty if Newton's method finds no F.
+/// (docs/methods/elasticity.md 7.9). `area_gradient`: result of surface_stretch. `start`: first guess of F N. The
+/// surface must be smooth. Empty if Newton's method finds no F.
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
-                                     const Mat3& stretch, const Vec3& traction, const Vec3& start);
+                                     const Mat3& area_gradient, const Vec3& traction, const Vec3& start);
 
 }  // namespace skerry

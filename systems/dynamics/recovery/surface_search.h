@@ -13,7 +13,7 @@ namespace skerry {
 struct SurfaceSearch {
     MaterialConstants material;
     const SurfaceAround* around;
-    Mat3 stretch;
+    Mat3 area_gradient;
     Vec3 traction, start;
 };
 

@@ -146,7 +146,7 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
 /// nine entries, R:X = s.Y. So the complete mass form is Y.(1 + b s s^T) Y, and
 ///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
 template <class T>
-void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
+void add_frame_mass(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);
     const T s[9] = {RL.c0.x, RL.c0.y, RL.c0.z, RL.c1.x, RL.c1.y, RL.c1.z, RL.c2.x, RL.c2.y, RL.c2.z};
     const T size = inner_product(RL, RL);
@@ -307,7 +307,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             else
                 law.add_stiffness(material, F_part, H);
             if (relaxes) add_viscous_stiffness(viscous, part, F_part, H);
-            if (frame) count_in(everywhere(frame->rotation), lanes_in(frame->b, part), L, A[part]);
+            if (frame) add_frame_mass(everywhere(frame->rotation), lanes_in(frame->b, part), L, A[part]);
         }
     });
     // All lanes of the block are tested together, so that the results have the same bits for every register width.

@@ -49,10 +49,10 @@ public:
         const auto count = static_cast<std::size_t>(last + 1 - first_node_);
         weigh();
         number(position.subspan(static_cast<std::size_t>(first_node_), count));
-        root_.resize(count);
+        inverse_root_mass_.resize(count);
         for (std::size_t n = 0; n < count; ++n) {
             const Real node_mass = mass[static_cast<std::size_t>(first_node_) + n];
-            root_[n] = node_mass > 0 ? 1 / std::sqrt(node_mass) : 0;
+            inverse_root_mass_[n] = node_mass > 0 ? 1 / std::sqrt(node_mass) : 0;
         }
     }
 
@@ -67,10 +67,11 @@ public:
         constexpr int most_products = 40;
         SplitMix noise(1);
         const Factors factors = factors_of_elements();
-        std::vector<Real4> before(root_.size(), Real4{}), vector(root_.size(), Real4{}), product(root_.size());
+        std::vector<Real4> before(inverse_root_mass_.size(), Real4{}), vector(inverse_root_mass_.size(), Real4{}),
+            product(inverse_root_mass_.size());
         Real size = 0;
         for (std::size_t n = 0; n < vector.size(); ++n) {
-            for (int i = 0; i < 3; ++i) vector[n][i] = root_[n] > 0 ? noise.symmetric() : 0;
+            for (int i = 0; i < 3; ++i) vector[n][i] = inverse_root_mass_[n] > 0 ? noise.symmetric() : 0;
             size += product_of(vector[n], vector[n]);
         }
         if (!(size > 0)) return 0;
@@ -109,11 +110,11 @@ public:
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
             const auto [shear, volumetric] = moduli_.moduli(block);
-            const Real8 volume = load(elements_.volume[block]), weighty = moduli_.explicit_mask(block) * volume;
+            const Real8 volume = load(elements_.volume[block]), explicit_volume = moduli_.explicit_mask(block) * volume;
             const Real8 one = Real8{} + 1.0, none = Real8{} + form_of_implicit;
-            const Real8 stiffness = weighty > 0.0 ? Real8(volume * shear) : one;
-            store(Real8(weighty > 0.0 ? Real8(bound / stiffness) : volume > 0.0 ? none : Real8{}), mass[i][0]);
-            store(Real8(weighty > 0.0 ? Real8(volume * volumetric / bound) : Real8{}), mass[i][1]);
+            const Real8 stiffness = explicit_volume > 0.0 ? Real8(volume * shear) : one;
+            store(Real8(explicit_volume > 0.0 ? Real8(bound / stiffness) : volume > 0.0 ? none : Real8{}), mass[i][0]);
+            store(Real8(explicit_volume > 0.0 ? Real8(volume * volumetric / bound) : Real8{}), mass[i][1]);
         }
     }
 
@@ -140,12 +141,12 @@ private:
         for (const ElementCorner& corner : corners_[place]) {
             const BlockNodes nodes = elements_.nodes_of(corner.block);
             const Element e = element_of(nodes, corner.block, corner.lane);
-            const Vec3 g = root_[e.node(corner.corner)] * e.gradient(corner.corner);
+            const Vec3 g = inverse_root_mass_[e.node(corner.corner)] * e.gradient(corner.corner);
             for (Index j = 0; j < e.count; ++j) {
-                const std::size_t other_node = place_[e.node(j)];
+                const std::size_t other_node = number_of_node_[e.node(j)];
                 if (other_node < place) continue;
                 const std::size_t column = 3 * (other_node - place);
-                const Vec3 other = root_[e.node(j)] * e.gradient(j);
+                const Vec3 other = inverse_root_mass_[e.node(j)] * e.gradient(j);
                 const Real same = e.shear * product_of(g, other);
                 for (std::size_t i = 0; i < 3; ++i)
                     for (std::size_t l = column == 0 ? i : 0; l < 3; ++l)
@@ -200,19 +201,19 @@ private:
         });
         sort_along(position, nodes);
         nodes_ = nodes.size();
-        place_.resize(position.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) place_[static_cast<std::size_t>(nodes[i])] = i;
+        number_of_node_.resize(position.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) number_of_node_[static_cast<std::size_t>(nodes[i])] = i;
         for_each_element([&](const Element& e, std::size_t) {
-            std::size_t low = place_[e.node(0)], high = low;
+            std::size_t low = number_of_node_[e.node(0)], high = low;
             for (Index k = 1; k < e.count; ++k) {
-                low = std::min(low, place_[e.node(k)]);
-                high = std::max(high, place_[e.node(k)]);
+                low = std::min(low, number_of_node_[e.node(k)]);
+                high = std::max(high, number_of_node_[e.node(k)]);
             }
             width_ = std::max(width_, high - low + 1);
         });
         corners_ = corners_at(nodes_, [&](auto&& visit) {
             for_each_element([&](const Element& e, std::size_t block) {
-                for (Index k = 0; k < e.count; ++k) visit(place_[e.node(k)], ElementCorner{block, e.lane, k});
+                for (Index k = 0; k < e.count; ++k) visit(number_of_node_[e.node(k)], ElementCorner{block, e.lane, k});
             });
         });
     }
@@ -234,7 +235,7 @@ private:
         Factors factors;
         for_each_element([&](const Element& e, std::size_t) {
             for (Index k = 0; k < e.count; ++k) {
-                const Vec3 g = root_[e.node(k)] * e.gradient(k);
+                const Vec3 g = inverse_root_mass_[e.node(k)] * e.gradient(k);
                 factors.corner.push_back({Real4{g[0], g[1], g[2], 0}, e.node(k)});
             }
             factors.element.push_back({e.shear, e.volumetric, factors.corner.size()});
@@ -285,8 +286,8 @@ private:
     RestModuli moduli_;
     Index first_node_ = 0;
     // Inverse square root of the mass by node, beginning with the first node of the body [1/sqrt(kg)].
-    std::vector<Real> root_;
-    std::vector<std::size_t> place_;
+    std::vector<Real> inverse_root_mass_;
+    std::vector<std::size_t> number_of_node_;
     std::size_t nodes_ = 0, width_ = 0;
     std::vector<Weights> weights_;   // by block
     Ragged<ElementCorner> corners_;  // by number of the node along the body

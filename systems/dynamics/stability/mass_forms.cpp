@@ -163,10 +163,12 @@ public:
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
-            const Real8 weighty = moduli_.explicit_mask(first_block() + i) * volume, none = Real8{} + form_of_implicit;
+            const Real8 explicit_volume = moduli_.explicit_mask(first_block() + i) * volume,
+                        none = Real8{} + form_of_implicit;
             Symmetric Q = Real8(Real8{} + bound) * inverse_of(load_form(weight_[i]));
-            for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz}) *entry = weighty > 0.0 ? *entry : volume > 0.0 ? none : Real8{};
-            for (Real8* entry : {&Q.xy, &Q.yz, &Q.zx}) *entry = weighty > 0.0 ? *entry : Real8{};
+            for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz})
+                *entry = explicit_volume > 0.0 ? *entry : volume > 0.0 ? none : Real8{};
+            for (Real8* entry : {&Q.xy, &Q.yz, &Q.zx}) *entry = explicit_volume > 0.0 ? *entry : Real8{};
             store_form(Q, form_[i]);
         }
     }

@@ -47,11 +47,11 @@ struct PieceRun {
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto piece = static_cast<Index>(from);
-    const auto at_most = [&](Index pieces) {
+    const auto number_up_to = [&](Index pieces) {
         return static_cast<Index>(std::min<std::uint64_t>(until - from, pieces));
     };
     if (piece < sums) {
-        const Index count = at_most(sums - piece);
+        const Index count = number_up_to(sums - piece);
         const Index first = blocks.begin + piece * blocks_summed;
         return {PieceWork::sum, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
     }
@@ -59,7 +59,7 @@ PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t u
     const Index bound = (piece - sums) % blocks.size();
     const auto wave = static_cast<Index>(std::bit_floor(static_cast<std::uint64_t>(bound)));
     const Index wave_end = std::min(bound == 0 ? 1 : 2 * wave, blocks.size());
-    const Index count = at_most(wave_end - bound);
+    const Index count = number_up_to(wave_end - bound);
     const Index first = blocks.begin + bound;
     return {
         in_frame ? PieceWork::bound_in_frame : PieceWork::bound, bound == wave, {first, first + count}, from + count};
@@ -218,10 +218,10 @@ void continue_check(Executor& executor, const ElementInputs& elements, Range blo
         for (Index c = 0; c * size < count; ++c) {
             StepEvaluation& own = part[static_cast<std::size_t>(c)];
             if (check.broken == no_index) check.broken = own.broken;
-            const Greatest at_most = greatest_of(check, run), here = greatest_of(own, run);
-            if (!(here.bound > at_most.bound)) continue;
-            at_most.bound = here.bound;
-            at_most.element = here.element;
+            const Greatest greatest = greatest_of(check, run), here = greatest_of(own, run);
+            if (!(here.bound > greatest.bound)) continue;
+            greatest.bound = here.bound;
+            greatest.element = here.element;
         }
     };
     run_pieces({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), until, check, in_chunks);

@@ -34,7 +34,7 @@ Index BlockFactor::next_to_eliminate() const {
     Real least = infinity;
     for (Index g = 0; g < part_count(); ++g) {
         if (rank_[static_cast<std::size_t>(g)] != no_index) continue;
-        const Real own = size(g), all = own + beside_[static_cast<std::size_t>(g)];
+        const Real own = size(g), all = own + coupled_size_[static_cast<std::size_t>(g)];
         if (!(own * all * all < least)) continue;
         least = own * all * all;
         next = g;
@@ -53,12 +53,12 @@ void BlockFactor::eliminate_pattern(Index next) {
     later_.offset.push_back(static_cast<Index>(later_.item.size()));
     for (std::size_t a = begin; a < later_.item.size(); ++a) {
         const Index h = later_.item[a];
-        beside_[static_cast<std::size_t>(h)] -= size(next);
+        coupled_size_[static_cast<std::size_t>(h)] -= size(next);
         for (std::size_t b = begin; b < later_.item.size(); ++b) {
             const Index k = later_.item[b];
             if (coupled_[pair(h, k)] != 0) continue;
             coupled_[pair(h, k)] = 1;
-            beside_[static_cast<std::size_t>(h)] += size(k);
+            coupled_size_[static_cast<std::size_t>(h)] += size(k);
         }
     }
 }
@@ -66,10 +66,10 @@ void BlockFactor::eliminate_pattern(Index next) {
 bool BlockFactor::analyse() {
     constexpr Real most_numbers = 32 << 20;  // limit on the entries of the factor: 256 MiB in numbers of 8 bytes
     const std::size_t count = size_.size();
-    beside_.assign(count, 0);
+    coupled_size_.assign(count, 0);
     for (Index g = 0; g < part_count(); ++g)
         for (Index h = 0; h < part_count(); ++h)
-            if (h != g && coupled_[pair(g, h)] != 0) beside_[static_cast<std::size_t>(g)] += size(h);
+            if (h != g && coupled_[pair(g, h)] != 0) coupled_size_[static_cast<std::size_t>(g)] += size(h);
     rank_.assign(count, no_index);
     order_.clear();
     later_.clear();
@@ -78,7 +78,7 @@ bool BlockFactor::analyse() {
     Real numbers = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const Index next = next_to_eliminate();
-        const Real own = size(next), rest = beside_[static_cast<std::size_t>(next)];
+        const Real own = size(next), rest = coupled_size_[static_cast<std::size_t>(next)];
         work_ += own * (own * own / 3 + own * rest + rest * rest);
         numbers += own * (own + 2 * rest);
         eliminate_pattern(next);

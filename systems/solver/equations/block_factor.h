@@ -56,7 +56,7 @@ private:
     Column<Index> size_;  // by part: number of unknowns
     // For each pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
     Column<std::uint8_t> coupled_;
-    Column<Index> beside_;        // by part: number of unknowns of the coupled parts that are not yet eliminated
+    Column<Index> coupled_size_;  // by part: number of unknowns of the coupled parts that are not yet eliminated
     Column<Index> order_, rank_;  // order_: parts in elimination order; rank_: by part, its index in order_
     // For each entry k of order_: the parts that are coupled to part order_[k] and eliminated after this part.
     Ragged<Index> later_;

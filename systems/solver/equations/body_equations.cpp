@@ -10,14 +10,14 @@ namespace {
 
 /// Jacobian of the contact velocity with respect to one unknown: velocity of a node, or velocity and spin of a rigid
 /// body. For a node only the first three columns are used.
-Eigen::Matrix<Real, 3, 6> jacobian_of(const BodyPush& push) {
+Eigen::Matrix<Real, 3, 6> jacobian_of(const UnknownEffect& effect) {
     Eigen::Matrix<Real, 3, 6> jacobian;
-    jacobian.leftCols<3>() = push.weight * Mat3::Identity();
-    jacobian.rightCols<3>() = -cross_matrix(push.arm);
+    jacobian.leftCols<3>() = effect.weight * Mat3::Identity();
+    jacobian.rightCols<3>() = -cross_matrix(effect.arm);
     return jacobian;
 }
-Index numbers_of(const BodyPush& push) {
-    return push.turns ? 6 : 3;
+Index numbers_of(const UnknownEffect& effect) {
+    return effect.turns ? 6 : 3;
 }
 
 }  // namespace
@@ -42,9 +42,9 @@ void BodyEquations::start_from_inertia() {
 }
 
 void BodyEquations::add(Index contact, const Mat3& block) {
-    const Pushes& contact_pushes = pushes_[static_cast<std::size_t>(contact)];
-    for (const BodyPush& row : contact_pushes.all())
-        for (const BodyPush& column : contact_pushes.all()) {
+    const ContactEffects& contact_effects = effects_[static_cast<std::size_t>(contact)];
+    for (const UnknownEffect& row : contact_effects.all())
+        for (const UnknownEffect& column : contact_effects.all()) {
             const DenseBlock to = factor_.block(row.part, column.part);
             if (!row.turns && !column.turns) {  // the usual case
                 const Real weight = row.weight * column.weight;
@@ -62,10 +62,10 @@ void BodyEquations::add(Index contact, const Mat3& block) {
 
 Vec3 BodyEquations::velocity(Index contact, std::span<const Real> v) const {
     Vec3 sum = Vec3::Zero();
-    for (const BodyPush& push : pushes_[static_cast<std::size_t>(contact)].all()) {
-        const Real* const at = v.data() + factor_.first(push.part) + static_cast<std::size_t>(push.first_entry);
-        sum += push.weight * Vec3(at[0], at[1], at[2]);
-        if (push.turns) sum += Vec3(at[3], at[4], at[5]).cross(push.arm);
+    for (const UnknownEffect& effect : effects_[static_cast<std::size_t>(contact)].all()) {
+        const Real* const at = v.data() + factor_.first(effect.part) + static_cast<std::size_t>(effect.first_entry);
+        sum += effect.weight * Vec3(at[0], at[1], at[2]);
+        if (effect.turns) sum += Vec3(at[3], at[4], at[5]).cross(effect.arm);
     }
     return sum;
 }
@@ -78,18 +78,19 @@ Real BodyEquations::set_right(std::span<const Real> x) {
 }
 
 void BodyEquations::add_right(Index contact, const Vec3& impulse) {
-    for (const BodyPush& push : pushes_[static_cast<std::size_t>(contact)].all()) {
-        Real* const at = factor_.right().data() + factor_.first(push.part) + static_cast<std::size_t>(push.first_entry);
-        const Vec3 moment = push.arm.cross(impulse);
-        for (Index k = 0; k < 3; ++k) at[k] += push.weight * impulse[k];
-        if (push.turns)
+    for (const UnknownEffect& effect : effects_[static_cast<std::size_t>(contact)].all()) {
+        Real* const at =
+            factor_.right().data() + factor_.first(effect.part) + static_cast<std::size_t>(effect.first_entry);
+        const Vec3 moment = effect.arm.cross(impulse);
+        for (Index k = 0; k < 3; ++k) at[k] += effect.weight * impulse[k];
+        if (effect.turns)
             for (Index k = 0; k < 3; ++k) at[3 + k] += moment[k];
     }
 }
 
 void BodyEquations::start_round() {
-    sliding_direction.assign(pushes_.size(), Vec3::Zero());
-    stops.assign(pushes_.size(), 0);
+    sliding_direction.assign(effects_.size(), Vec3::Zero());
+    stops.assign(effects_.size(), 0);
     rises = 0;
 }
 

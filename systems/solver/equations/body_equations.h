@@ -16,7 +16,7 @@ namespace skerry {
 
 /// Effect of a contact on one unknown of the equations: on the velocity of a node (three entries of a part), or on the
 /// velocity and spin of a rigid body (six entries).
-struct BodyPush {
+struct UnknownEffect {
     Index part = no_index;
     Index first_entry = 0;  // index of the first entry of the unknown within the part
     bool turns = false;
@@ -28,12 +28,12 @@ struct BodyPush {
 /// Equations of one region. Memory is reused between regions.
 class BodyEquations {
 public:
-    struct Pushes {
-        std::array<BodyPush, 6> push;
+    struct ContactEffects {
+        std::array<UnknownEffect, 6> effect;
         Index count = 0;
 
-        void add(const BodyPush& added) { push[static_cast<std::size_t>(count++)] = added; }
-        std::span<const BodyPush> all() const { return {push.data(), static_cast<std::size_t>(count)}; }
+        void add(const UnknownEffect& added) { effect[static_cast<std::size_t>(count++)] = added; }
+        std::span<const UnknownEffect> all() const { return {effect.data(), static_cast<std::size_t>(count)}; }
     };
     /// A node velocity or rigid motion that contacts of the region can change. `row`: its row among the velocities of
     /// the region. `part`, `first_entry`: its part (group of unknowns of BlockFactor), and the index of its first entry
@@ -57,7 +57,7 @@ public:
     Column<Index>& unknown_of_row() { return unknown_of_row_; }
     Square square(Index numbers);
     /// Effects of each contact on the unknowns, by contact.
-    Column<Pushes>& pushes() { return pushes_; }
+    Column<ContactEffects>& effects() { return effects_; }
     /// Estimated cost of one Newton step; infinite if Newton steps are impossible [ns]
     Real cost() const { return cost_; }
     void set_cost(Real cost) { cost_ = cost; }
@@ -96,7 +96,7 @@ private:
     BlockFactor factor_;
     Column<Unknown> unknown_;
     Column<Index> unknown_of_row_;
-    Column<Pushes> pushes_;
+    Column<ContactEffects> effects_;
     Column<Real> square_, inertia_;
     Column<Index> pivot_;
     Real cost_ = 0;

@@ -32,7 +32,7 @@ void subtract(Real value, Real* from) {
 /// overwrites the column. TakeOffLast subtracts only the last `count` entries of the register. It serves the last rows
 /// of c if they do not fill a register: the register then begins with rows that are already done.
 constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
-struct TakeOffLast {
+struct SubtractLastRows {
     Index count;
 
     void operator()(const Real8& value, Real* from) const {
@@ -72,14 +72,14 @@ void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c
 }
 
 /// Smallest range [first, last) with all columns of a that have a nonzero entry in rows row .. row + 7.
-std::pair<Index, Index> columns_that_count(const DenseBlock& a, Index row) {
-    const auto counts = [&](Index k) {
+std::pair<Index, Index> nonzero_columns(const DenseBlock& a, Index row) {
+    const auto is_nonzero = [&](Index k) {
         const Real* const at = a.column(k) + row;
         return std::any_of(at, at + 8, [](Real x) { return x != 0; });
     };
     Index first = 0, last = a.columns;
-    while (first < last && !counts(first)) ++first;
-    while (last > first && !counts(last - 1)) --last;
+    while (first < last && !is_nonzero(first)) ++first;
+    while (last > first && !is_nonzero(last - 1)) --last;
     return {first, last};
 }
 
@@ -176,13 +176,13 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
 /// Zero columns belong to nodes whose contacts are all open, since such nodes do not couple to other bodies.
 void for_each_run_of_columns(const DenseBlock& b, auto&& visit) {
     constexpr Index gap = 8;
-    const auto counts = [&](Index k) {
+    const auto is_nonzero = [&](Index k) {
         const Real* const at = b.column(k);
         return std::any_of(at, at + b.rows, [](Real x) { return x != 0; });
     };
     Index begin = 0, end = 0;
     for (Index k = 0; k < b.columns; ++k) {
-        if (!counts(k)) continue;
+        if (!is_nonzero(k)) continue;
         if (k - end >= gap || end == 0) {
             if (end > begin) visit(begin, end - begin);
             begin = k;
@@ -197,12 +197,12 @@ void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const Dens
     for (; row + 8 <= c.rows; row += 8) {
         // Only a few consecutive columns of a are nonzero in the eight rows from `row` on, because contacts couple each
         // node of a face to a few consecutive nodes of the other face.
-        const auto [first, last] = columns_that_count(a, row);
+        const auto [first, last] = nonzero_columns(a, row);
         multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
                              subtract_from);
     }
     if (row < c.rows && c.rows >= 8)
-        multiply_rows<Real8>(a, b, c, c.rows - 8, TakeOffLast{c.rows - row});
+        multiply_rows<Real8>(a, b, c, c.rows - 8, SubtractLastRows{c.rows - row});
     else
         for (; row < c.rows; ++row) multiply_rows<Real>(a, b, c, row, subtract_from);
 }

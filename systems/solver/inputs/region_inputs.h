@@ -107,7 +107,7 @@ struct ImplicitInputs {
     /// Change of a node's velocity relative to the frame of its implicit body by the forces of this step, in world axes
     /// [m/s]; zero for nodes of other bodies. It is due to elastic forces above all. In a body at rest, contact
     /// impulses cancel this change in every step.
-    Vec3 thrown(Index node, const RigidNodes& nodes) const {
+    Vec3 deformation_kick(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();
         const auto r = static_cast<std::size_t>(nodes.row(node)), at = static_cast<std::size_t>(row);

@@ -92,8 +92,8 @@ SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* prev
         const LaneVec3<T> next =
             select<T>(swept, project_lanes<T>(stopping, problem.normal[i], problem.friction[i]), before);
         const LaneVec3<T> change = next - before;
-        sum.size += problem.diagonal[i] * dot(change, change);
-        sum.against -= problem.diagonal[i] * dot(change, next - previous[i]);
+        sum.squared_change += problem.diagonal[i] * dot(change, change);
+        sum.reversal -= problem.diagonal[i] * dot(change, next - previous[i]);
         problem.impulse[i] = next;
     }
     return sum;

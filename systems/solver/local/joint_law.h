@@ -12,7 +12,7 @@ namespace skerry {
 /// Limits, motor and passive forces of an axis in this step.
 struct AxisBounds {
     Real low = -infinity, high = infinity;  // velocity limits [m/s or rad/s]
-    Real target = 0, most = 0;              // velocity [m/s or rad/s] and greatest impulse [N s or N m s] of the motor
+    Real target = 0, max_impulse = 0;       // velocity [m/s or rad/s] and greatest impulse [N s or N m s] of the motor
     Real friction = 0;                      // greatest impulse of dry friction [N s or N m s]
     // Impulse of spring and damper at the axis velocity u: pull - drag u [N s or N m s].
     Real pull = 0;
@@ -23,14 +23,17 @@ struct AxisBounds {
 /// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
     // Motor and friction are two drives. Each pushes towards its target velocity with at most its greatest impulse; the
-    // target of friction is 0. `first`, `second`: greatest impulses of the drives with the lower and with the higher
-    // target. The sum of both impulses is a falling staircase of u: first + second below the lower target, second -
-    // first between the targets, -first - second above the higher one. At a target it takes any value of the jump.
-    const bool motor_first = axis.target < 0;
-    const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
-    const Real near_first = std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
-    if (near_first > second - first) return near_first;
-    return std::clamp((std::max(axis.target, Real(0)) - b) / w, -second - first, second - first);
+    // target of friction is 0. `lower_drive`, `upper_drive`: greatest impulses of the drives with the lower and with
+    // the higher target. The sum of both impulses is a falling staircase of u: lower_drive + upper_drive below the
+    // lower target, upper_drive - lower_drive between the targets, -lower_drive - upper_drive above the higher one. At
+    // a target it takes any value of the jump.
+    const bool motor_is_lower = axis.target < 0;
+    const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
+               upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
+    const Real near_lower_target =
+        std::clamp((std::min(axis.target, Real(0)) - b) / w, upper_drive - lower_drive, upper_drive + lower_drive);
+    if (near_lower_target > upper_drive - lower_drive) return near_lower_target;
+    return std::clamp((std::max(axis.target, Real(0)) - b) / w, -upper_drive - lower_drive, upper_drive - lower_drive);
 }
 
 /// Returns the impulse r of the axis, where u = w r + b is the axis velocity and w the mobility. The limits `low` and
@@ -56,15 +59,16 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
         const Real share = 1 / (1 + w * axis.drag);
         drive = drive_impulse(axis, share * w, share * (u - w * r + w * axis.pull));
     }
-    if (!(axis.most > 0)) return {0, spring + drive};
+    if (!(axis.max_impulse > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
-    // `first`, `second`: as in drive_impulse. If the sum of both drives is at least second - first, the axis is not
-    // faster than the lower target: the second drive has its full strength, and the first one gives the rest. Otherwise
-    // the first drive brakes with full strength.
-    const bool motor_first = axis.target < 0;
-    const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
-    const Real first_drive = drive >= second - first ? drive - second : -first;
-    const Real motor = motor_first ? first_drive : drive - first_drive;
+    // `lower_drive`, `upper_drive`: as in drive_impulse. If the sum of both drives is at least upper_drive -
+    // lower_drive, the axis is not faster than the lower target: the upper drive has its full strength, and the lower
+    // one gives the rest. Otherwise the lower drive brakes with full strength.
+    const bool motor_is_lower = axis.target < 0;
+    const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
+               upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
+    const Real lower_impulse = drive >= upper_drive - lower_drive ? drive - upper_drive : -lower_drive;
+    const Real motor = motor_is_lower ? lower_impulse : drive - lower_impulse;
     return {motor, spring + (drive - motor)};
 }
 

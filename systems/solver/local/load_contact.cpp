@@ -9,13 +9,13 @@ namespace {
 /// `before`: contact velocity at the start of the step [m/s]. `now`: predicted contact velocity after the forces of the
 /// step have acted [m/s]. It leaves out the velocity change by the deformation of implicit bodies, because contact
 /// impulses cancel this change in a body at rest.
-struct AroundKick {
+struct KickVelocities {
     Vec3 before, now;
 };
 
-inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
+inline KickVelocities kick_velocities(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
     const Stencil& stencil = inputs.stencil[row];
-    AroundKick velocity{-inputs.surface_velocity[row], -inputs.surface_velocity[row]};
+    KickVelocities velocity{-inputs.surface_velocity[row], -inputs.surface_velocity[row]};
     for (std::size_t a = 0; a < 4; ++a) {
         if (stencil.weight[a] == 0) continue;
         velocity.before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
@@ -31,7 +31,8 @@ inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<c
     if (inputs.implicit.any())
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0)
-                velocity.now -= stencil.weight[a] * inputs.implicit.thrown(stencil.node[a], inputs.rigid.nodes);
+                velocity.now -=
+                    stencil.weight[a] * inputs.implicit.deformation_kick(stencil.node[a], inputs.rigid.nodes);
     return velocity;
 }
 
@@ -43,14 +44,15 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     const Real closing = gap < 0 ? 0 : gap / h;
     const Real restitution = inputs.restitution[row];
     if (restitution == 0) return closing;
-    const auto [before, coming] = around_kick(inputs, row, velocity_next);
+    const auto [before, coming] = kick_velocities(inputs, row, velocity_next);
     const Real approach = before.dot(inputs.normal[row]);
     // A contact is an impact only if its approach speed clearly exceeds the velocity change by the forces of one step
     // (docs/methods/contact.md 3.2). The weight alone gives a resting contact the speed g h, and elastic forces can
     // press on a node in every step. If such contacts rebounded, the node would bounce forever.
-    const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
+    const Real kick_speed = std::abs(coming.dot(inputs.normal[row]) - approach);
     constexpr Real clearly = 2;  // least ratio of the approach speed of an impact to the velocity change by forces
-    const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
+    const Real slowest_impact =
+        std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * kick_speed});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;
 }
@@ -58,15 +60,15 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
     if (inputs.dynamic_friction[row] == 0 || inputs.is_tie(row)) return Vec3::Zero();
     if (!inputs.friction_axis.empty() && inputs.friction_axis[row].across != 1) return Vec3::Zero();
-    const auto [before, now] = around_kick(inputs, row, velocity_next);
+    const auto [before, now] = kick_velocities(inputs, row, velocity_next);
     const Vec3& normal = inputs.normal[row];
     const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal,
                turn = slip - slip_before;
     // If the forces nearly stop or reverse the sliding, no direction at the middle of the step is defined, and the
     // correction is zero. The factor `fading` makes the correction a continuous function of the velocities.
     // `fading` is 1 if the velocity change is at most a quarter of the sliding speed, and 0 if it is at least a half.
-    constexpr Real gone = 2, slope = 4;
-    const Real fading = gone - slope * turn.norm() / slip_before.norm();
+    constexpr Real fade_end = 2, slope = 4;
+    const Real fading = fade_end - slope * turn.norm() / slip_before.norm();
     if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();
     return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);
 }

@@ -30,7 +30,7 @@ struct RigidTerm {
     Vec4 arm;              // sum of weight times vector from the centre of mass to the node [m]
     Columns3 spin_step;    // change of spin per unit impulse: I^-1 times the cross-product matrix of `arm` [1/(kg m)]
     // Coefficient of the spin: 1 or -1 in joint rows of rotation, whose impulses are moments; otherwise 0.
-    Real turn = 0;
+    Real spin_coefficient = 0;
 };
 
 struct RigidPart {
@@ -45,7 +45,7 @@ struct RigidPart {
     Real across = 1;
     // mobility along the normal, with deformable bodies taken as rigid; for the split impulse [1/kg]
     Real along_normal;
-    Real steepest;  // upper bound of the largest eigenvalue of W_ii [1/kg]
+    Real max_eigenvalue;  // upper bound of the largest eigenvalue of W_ii [1/kg]
 };
 
 /// Adds the contact velocity due to rigid bodies to `start`. The function is always inlined: every contact step calls
@@ -54,7 +54,7 @@ struct RigidPart {
     for (Index k = 0; k < part.term_count; ++k) {
         const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
         start += term.weight * velocity[term.slot] + cross(velocity[term.slot + 1], term.arm);
-        if (term.turn != 0) start += term.turn * velocity[term.slot + 1];
+        if (term.spin_coefficient != 0) start += term.spin_coefficient * velocity[term.slot + 1];
     }
     return start;
 }
@@ -76,7 +76,7 @@ inline Mat3 rigid_coupling(const RigidPart& a, const RigidPart& b) {
             if (of_a.slot != of_b.slot) continue;
             sum += of_a.weight * of_b.step * Mat3::Identity() -
                    cross_matrix(of_a.arm.head<3>()) * matrix_of(of_b.spin_step);
-            if (of_a.turn != 0) sum += of_a.turn * matrix_of(of_b.spin_step);
+            if (of_a.spin_coefficient != 0) sum += of_a.spin_coefficient * matrix_of(of_b.spin_step);
         }
     return sum;
 }

@@ -30,11 +30,12 @@ public:
         constexpr Real guard = 2;
         const T zero{}, one = zero + 1;
         const T next_momentum = (1 + square_root(T(1 + 4 * momentum_ * momentum_))) / 2;
-        smallest_change_ = change.size < smallest_change_ ? change.size : smallest_change_;
-        const LaneMask<T> restart = plain | (change.against > zero) | (change.size > guard * smallest_change_);
+        smallest_change_ = change.squared_change < smallest_change_ ? change.squared_change : smallest_change_;
+        const LaneMask<T> restart =
+            plain | (change.reversal > zero) | (change.squared_change > guard * smallest_change_);
         const T extrapolation = restart ? zero : (momentum_ - 1) / next_momentum;
         momentum_ = restart ? one : next_momentum;
-        smallest_change_ = restart ? change.size : smallest_change_;
+        smallest_change_ = restart ? change.squared_change : smallest_change_;
         return extrapolation;
     }
 

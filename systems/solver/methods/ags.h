@@ -24,7 +24,7 @@ public:
             if (iteration_ > 0) extrapolate();
             ++iteration_;
             change_ = op_.accelerated_sweep(watchdog_.relaxation() * relaxation_);
-            if (test_.ends_after_sweep(iteration_, change_.size, last)) return true;
+            if (test_.ends_after_sweep(iteration_, change_.squared_change, last)) return true;
         }
         return false;
     }
@@ -44,7 +44,7 @@ private:
         // Number of sweeps between two refreshes, which recompute the velocities from the impulses. Extrapolation
         // accumulates rounding errors; a refresh costs half a sweep.
         constexpr Index refresh_interval = 64;
-        const LaneMask<Number> plain = watchdog_.plain_after(iteration_, change_.size);
+        const LaneMask<Number> plain = watchdog_.plain_after(iteration_, change_.squared_change);
         const Number extrapolation = acceleration_.next(change_, plain);
         if (iteration_ % refresh_interval == 0) op_.refresh_all();
         op_.extrapolate(extrapolation);

@@ -153,8 +153,8 @@ SweepChange BlockOperator::accelerated_sweep(Real relaxation) {
         const Vec4 before = present[i];
         const Real size = step(i, relaxation);
         if (size == 0) continue;
-        sum.size += size;
-        sum.against -= inner(i, present[i] - before, present[i] - previous[i]);
+        sum.squared_change += size;
+        sum.reversal -= inner(i, present[i] - before, present[i] - previous[i]);
     }
     return sum;
 }

@@ -92,27 +92,27 @@ void BodyOperator::list_parts(BodyEquations& equations) const {
     }
 }
 
-void BodyOperator::list_pushes(BodyEquations& equations) const {
-    Column<BodyEquations::Pushes>& pushes = equations.pushes();
-    pushes.resize(static_cast<std::size_t>(size()));
+void BodyOperator::list_effects(BodyEquations& equations) const {
+    Column<BodyEquations::ContactEffects>& effects = equations.effects();
+    effects.resize(static_cast<std::size_t>(size()));
     equations.derivative.resize(static_cast<std::size_t>(size()));
     const auto unknown_of = [&](Index row) -> const Unknown& {
         return equations.unknown()[static_cast<std::size_t>(equations.unknown_of_row()[static_cast<std::size_t>(row)])];
     };
     for (Index i = 0; i < size(); ++i) {
-        BodyEquations::Pushes& contact_pushes = pushes[static_cast<std::size_t>(i)];
-        contact_pushes.count = 0;
+        BodyEquations::ContactEffects& contact_effects = effects[static_cast<std::size_t>(i)];
+        contact_effects.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
             // The rigid motion of a deformable body is an unknown only with rigid_modes, and only if the body is not
             // held. Without rigid_modes its nodes are the unknowns, and their velocities include the rigid motion.
             if (!moves_rigidly(equations, term)) continue;
-            contact_pushes.add(
+            contact_effects.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact(i).node_count); ++a) {
             if (!is_unknown(equations, contact(i).node[a])) continue;
             const Unknown& node = unknown_of(contact(i).node[a]);
-            contact_pushes.add({.part = node.part, .first_entry = node.first_entry, .weight = contact(i).weight[a]});
+            contact_effects.add({.part = node.part, .first_entry = node.first_entry, .weight = contact(i).weight[a]});
         }
     }
 }
@@ -121,9 +121,9 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
 void BodyOperator::couple_parts(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     factor.close_parts();
-    for (const BodyEquations::Pushes& contact_pushes : equations.pushes())
-        for (const BodyPush& a : contact_pushes.all())
-            for (const BodyPush& b : contact_pushes.all()) factor.couple(a.part, b.part);
+    for (const BodyEquations::ContactEffects& contact_effects : equations.effects())
+        for (const UnknownEffect& a : contact_effects.all())
+            for (const UnknownEffect& b : contact_effects.all()) factor.couple(a.part, b.part);
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         if (!deforms(equations.unknown()[begin])) return;
         for (Index g = equations.unknown()[begin].part; g <= equations.unknown()[end - 1].part; ++g)
@@ -155,7 +155,7 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     if (touches_clusters()) return equations;
     list_unknowns(equations);
     list_parts(equations);
-    list_pushes(equations);
+    list_effects(equations);
     constexpr Index max_parts = 4000;  // the memory for all pairs of parts grows with the square of this number
     if (equations.factor().part_count() > max_parts) return equations;
     couple_parts(equations);

@@ -47,7 +47,7 @@ Vec4 BodyOperator::solve_law(Index i, const Vec4& impulse, const Vec4& u) {
         return solve_in_frame(own_part, u - times(own_part.mobility, impulse), contact(i).friction);
     // The exact step would use the diagonal block W_ii. This step replaces W_ii by an upper bound on its eigenvalues.
     // It is exact if W_ii is a scalar times the identity, otherwise the step is shorter than the exact one.
-    return project(i, impulse - u / own_part.steepest);
+    return project(i, impulse - u / own_part.max_eigenvalue);
 }
 
 Real BodyOperator::push_tie(Index i, const Vec4& held_velocity, Vec4* velocity) const {
@@ -124,7 +124,7 @@ Real BodyOperator::sweep(Real relaxation) {
     for_each_in_sweep([&](Index i) { change += step(i, relaxation); });
     SweepChange cable_change;
     sweep_cables(relaxation, cable_change);
-    return change + cable_change.size;
+    return change + cable_change.squared_change;
 }
 
 SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
@@ -135,8 +135,8 @@ SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
         const Vec4 before = present[at];
         const Real size = step(i, relaxation);
         if (size == 0) return;
-        sum.size += size;
-        sum.against -= inner(i, present[at] - before, present[at] - previous[at]);
+        sum.squared_change += size;
+        sum.reversal -= inner(i, present[at] - before, present[at] - previous[at]);
     });
     sweep_cables(relaxation, sum);
     return sum;
@@ -186,8 +186,8 @@ void BodyOperator::sweep_cables(Real relaxation, SweepChange& sum) {
         if (nodes != nullptr) runs_->spread_sums(traversal_, velocity);
         if (!memory_.workspace[1].empty()) law.read(memory_.workspace[1].subspan(first), law.previous);
         for (std::size_t s = 0; s < law.segments(); ++s) law.previous[s] = law.impulse[s] - law.previous[s];
-        sum.size += law.product(law.before, law.before);
-        sum.against -= law.product(law.before, law.previous);
+        sum.squared_change += law.product(law.before, law.before);
+        sum.reversal -= law.product(law.before, law.previous);
     }
 }
 

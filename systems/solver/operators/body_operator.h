@@ -163,7 +163,7 @@ private:
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real merit);
     void list_unknowns(BodyEquations& equations) const;
     void list_parts(BodyEquations& equations) const;
-    void list_pushes(BodyEquations& equations) const;
+    void list_effects(BodyEquations& equations) const;
     void couple_parts(BodyEquations& equations) const;
     void assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const;
     Index body_id_of_node(Index node) const;

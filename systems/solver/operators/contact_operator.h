@@ -26,14 +26,14 @@ struct SolveResult {
 /// in SIMD lanes.
 template <class T>
 struct SweepChangeOf {
-    T size{};  // sum of change . W_ii change over the contacts
+    T squared_change{};  // sum of change . W_ii change over the contacts
     // Minus the sum of change . W_ii (impulse - previous); positive if the sweep reverses the previous change of the
     // impulses.
-    T against{};
+    T reversal{};
 
     SweepChangeOf& operator+=(const SweepChangeOf& other) {
-        size += other.size;
-        against += other.against;
+        squared_change += other.squared_change;
+        reversal += other.reversal;
         return *this;
     }
 };
@@ -67,7 +67,7 @@ concept ContactOperator = SweptOperator<Op> &&
     op.refresh();                                              // recomputes the stored velocities from the impulse
     // Slot 0: best iterate; slot 1: previous impulse of accelerated sweeps; other slots: free for the method.
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;  // one sweep; returns SweepChangeOf::size
+    { op.sweep(number) } -> std::convertible_to<Real>;  // one sweep; returns SweepChangeOf::squared_change
     op.residual(out);      // writes -u of each contact; Lazarevych et al. (2010) call it b - A lambda
     op.multiply(in, out);  // out = W in
     { constant.project(i, vector) } -> std::convertible_to<Vec4>;  // projection of an impulse onto the friction law

@@ -138,8 +138,8 @@ SweepChange LumpedOperatorBy<Traversal>::accelerated_sweep(Real relaxation) {
                 const Vec4 before = impulse[i];
                 const Real moved = step(i, impulse[i]);
                 if (moved == 0) continue;
-                sum.size += moved;
-                sum.against -= contacts[i].diagonal * (impulse[i] - before).dot(impulse[i] - previous[i]);
+                sum.squared_change += moved;
+                sum.reversal -= contacts[i].diagonal * (impulse[i] - before).dot(impulse[i] - previous[i]);
             }
             return sum;
         });

@@ -37,8 +37,8 @@ public:
             if (change == 0) continue;
             apply_impulse(contact, change * contact.normal, velocity);
             impulse[i] = next;
-            sum.size += contact.diagonal * change * change;
-            sum.against -= contact.diagonal * change * (next - previous[i]);
+            sum.squared_change += contact.diagonal * change * change;
+            sum.reversal -= contact.diagonal * change * (next - previous[i]);
         }
         return sum;
     }

@@ -25,7 +25,7 @@ void write_to_bodies(const RegionStage& stage, const RigidPart& part, const Vec4
         const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
         const auto r = static_cast<std::size_t>(term.row);
         stage.out.contact_impulse[r] += term.weight * impulse.head<3>();
-        stage.out.contact_moment[r] += cross(term.arm, impulse).head<3>() + term.turn * impulse.head<3>();
+        stage.out.contact_moment[r] += cross(term.arm, impulse).head<3>() + term.spin_coefficient * impulse.head<3>();
     }
 }
 

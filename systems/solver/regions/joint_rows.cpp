@@ -70,7 +70,7 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real max_speed)
     bounds.high = std::max((axis.upper - axis.coordinate) / h, -max_speed);
     add_passive(axis, mobility, h, bounds);
     if (axis.drive == JointDrive::none) return bounds;
-    bounds.most = axis.kick * axis.motor.most;
+    bounds.max_impulse = axis.kick * axis.motor.most;
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real distance = axis.motor.target - axis.coordinate;
@@ -137,7 +137,7 @@ void add_term(const RegionStage& stage, const JointBlock& block, Index body, Rea
     term = {.row = body, .slot = static_cast<Index>(2 * rigid_index), .arm = Vec4::Zero(), .spin_step = {}};
     const Mat3& inverse_inertia = stage.inputs.rigid.spins.inverse_inertia[r];
     if (block.turning) {
-        term.turn = sign;
+        term.spin_coefficient = sign;
         term.spin_step = columns_of(sign * inverse_inertia);
         return;
     }
@@ -164,7 +164,7 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
     part.frame = columns_of(block.frame);
     const Mat3 mobility = rigid_coupling(part, part);
     part.mobility = columns_of(mobility);
-    part.along_normal = part.steepest = mobility.norm();
+    part.along_normal = part.max_eigenvalue = mobility.norm();
     loaded.law.mimic = block.mimic.coefficient;
     loaded.law.axis_free = false;
     if (loaded.law.mimic == 0) loaded.law.prepare(block.frame.transpose() * mobility * block.frame, with_axis);

@@ -112,7 +112,7 @@ private:
                     add_term(part, body, acts_at, weight, [&] {
                         // Moment arm from the core of a round body to its surface.
                         return is_tie ? Vec3(Vec3::Zero())
-                                      : rigid.beside_core(node, weight, row, contact_normal(i), stage_.inputs.touch);
+                                      : rigid.core_arm(node, weight, row, contact_normal(i), stage_.inputs.touch);
                     });
                 return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
             });
@@ -231,7 +231,7 @@ private:
         part.along_normal = normal.dot(mobility * normal);
         if (moves_nodes && part.term_count > 0 && stage_.inputs.implicit.any())
             part.along_normal = normal.dot((region_.traversal.undeformed_coupling(contact, contact) + rigid) * normal);
-        part.steepest = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
+        part.max_eigenvalue = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
         if (part.term_count > 0 || part.across != 1) {
             Mat3 frame = matrix_of(part.frame);
             frame.col(2) *= part.across;

@@ -14,7 +14,7 @@ void add_region(Index block, Index region, Column<Index>& region_of, Ragged<Inde
 }
 
 /// Lists the clusters and rigid bodies of the nodes of a stencil.
-void note_stencil(const RegionInputs& inputs, const Stencil& stencil, Index number, RegionMemory& memory) {
+void list_groups_of(const RegionInputs& inputs, const Stencil& stencil, Index number, RegionMemory& memory) {
     for (std::size_t a = 0; a < 4; ++a) {
         if (stencil.weight[a] == 0) continue;
         if (inputs.clustered())
@@ -67,11 +67,11 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
         const auto number = static_cast<Index>(r);
         memory.node_base[r] = end;
         for (const Index contact : regions.contacts[r])
-            note_stencil(inputs, inputs.stencil[static_cast<std::size_t>(contact)], number, memory);
+            list_groups_of(inputs, inputs.stencil[static_cast<std::size_t>(contact)], number, memory);
         for (const Index cable : regions.cables_of(r))
             for (const Stencil& of_point :
                  rows_of(inputs.cables.stencil, inputs.cables.block[static_cast<std::size_t>(cable)].points))
-                note_stencil(inputs, of_point, number, memory);
+                list_groups_of(inputs, of_point, number, memory);
         for (const Index joint : regions.joints_of(r)) {
             const JointBlock& block = inputs.joints[static_cast<std::size_t>(joint)];
             if (block.first_node != no_index)

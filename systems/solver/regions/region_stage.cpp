@@ -77,12 +77,12 @@ Real dissipated_by(const RegionStage& stage, Index row) {
     const Vec3& impulse = stage.out.impulse[row];
     if (impulse.isZero(0)) return 0;
     const Stencil& stencil = stage.inputs.stencil[row];
-    Vec3 twice_mean = -2 * stage.inputs.surface_velocity[row];
+    Vec3 velocity_sum = -2 * stage.inputs.surface_velocity[row];
     for (std::size_t a = 0; a < 4; ++a)
         if (stencil.weight[a] != 0)
-            twice_mean +=
+            velocity_sum +=
                 stencil.weight[a] * (stage.inputs.velocity[stencil.node[a]] + stage.out.velocity_next[stencil.node[a]]);
-    return -0.5 * impulse.dot(twice_mean);
+    return -0.5 * impulse.dot(velocity_sum);
 }
 
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses) {

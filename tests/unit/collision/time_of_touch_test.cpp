@@ -99,7 +99,7 @@ Side side_of(const Vec3& point, const std::array<Vec3, 3>& corner) {
 
 /// Positions on the collider that point k represents.
 std::vector<Vec3> places_of_point(const ColliderGeometry& geometry, Index k) {
-    if (!collider_point_follows(geometry.shape, k)) return {collider_point(geometry, k, Vec3::Zero()).at};
+    if (!is_moving_rim_point(geometry.shape, k)) return {collider_point(geometry, k, Vec3::Zero()).at};
     std::vector<Vec3> rim;
     for (int i = 0; i < 180; ++i) {
         const Real angle = 2 * std::numbers::pi * i / 180;

@@ -86,7 +86,7 @@ struct Loose {
             if (count == 0) continue;
             if (found.count == 0) found = {0, static_cast<Index>(body), first, false};
             found.count += count;
-            found.first |= !inverted;
+            found.is_first_of_body |= !inverted;
         }
         return found;
     }
@@ -119,7 +119,7 @@ TEST_CASE("inverted elements are found as by testing every element in every step
             REQUIRE(found.count == expected.count);
             REQUIRE(found.body == expected.body);
             REQUIRE(found.tetrahedron == expected.tetrahedron);
-            REQUIRE(found.first == expected.first);
+            REQUIRE(found.is_first_of_body == expected.is_first_of_body);
             with += found.count > 0;
             for (std::size_t b = 0; b < before.size(); ++b) skipped += before[b] == loose.block_uninverted_until[b];
             loose.position = loose.next();
@@ -166,24 +166,24 @@ TEST_CASE("a sliver that turns over is counted, but no step is shortened for it"
         loose.max_speed[0] = std::max(loose.max_speed[0], way / h);
     };
     let_fall(0, 0.04);
-    CHECK(loose.find().first);
+    CHECK(loose.find().is_first_of_body);
     loose.sliver = {1};
     Inversions found = loose.find();
     CHECK(found.count == 1);
     CHECK(found.tetrahedron == 0);
-    CHECK_FALSE(found.first);
+    CHECK_FALSE(found.is_first_of_body);
 
     let_fall(1, 2);
     found = loose.find();
     CHECK(found.count == 2);
-    CHECK(found.first);
+    CHECK(found.is_first_of_body);
 
     loose.position[3].z() = -0.02;  // inverted long ago: the body counts as sound
     let_fall(0, 0);
     found = loose.find();
     CHECK(found.count == 1);
     CHECK(found.tetrahedron == 1);
-    CHECK(found.first);
+    CHECK(found.is_first_of_body);
 }
 
 }  // namespace skerry::test::find_inversions_test

@@ -243,7 +243,7 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     constexpr Real within = 0.01;
     begin_step(stiff, bent(stiff, body, noise), velocity);
     if (!held) {
-        stiff.set_shape(stiff.large_step.carried);
+        stiff.set_shape(stiff.large_step.unmoved_displacement);
         stiff.remove_momenta(stiff.large_step.velocity);
         stiff.large_step.angular_momentum = stiff.shape().inertia() * Vec3(2, -4, 6);
     }
@@ -293,7 +293,7 @@ TEST_CASE("a body that is not finite has no step of large strain", "[dynamics][i
     std::vector<Vec3> velocity(stiff.size(), Vec3::Zero());
     velocity[3].x() = std::numeric_limits<Real>::quiet_NaN();
     begin_step(stiff, bent(stiff, body, 0), velocity);
-    stiff.set_shape(stiff.large_step.carried);
+    stiff.set_shape(stiff.large_step.unmoved_displacement);
     CHECK(!solve_large_step(1, 0.01, stiff));
 }
 

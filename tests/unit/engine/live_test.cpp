@@ -55,7 +55,7 @@ TEST_CASE("a browser that misses frames decodes those that it gets", "[unit][liv
         REQUIRE(world.advance(0.005).ok());
         positions[world.time()].assign(world.positions(cube).begin(), world.positions(cube).end());
         const std::size_t frames = visit.browser.rows().size();
-        const bool ready = hub.wish().frame;
+        const bool ready = hub.requested_frame().frame;
         take_and_publish(hub, taker, world);
         if (ready) visit.browser.wait_for_frames(frames + 1);
         if (step % 5 == 4) visit.acknowledge(visit.browser.rows().size());  // meanwhile others were dropped

@@ -7,8 +7,8 @@
 
 #include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/repair/part_fans.h"
+#include "engine/mesh/repair/remove_flat_triangles.h"
 #include "engine/mesh/repair/surface_distance.h"
-#include "engine/mesh/repair/thin_knots.h"
 #include "engine/mesh/repair/triangle_tree.h"
 #include "skerry/error.h"
 #include "skerry/world.h"
@@ -121,22 +121,22 @@ TEST_CASE("a needle of a flat face goes, and the surface stays where it was", "[
     SurfaceMesh box = unit_box(4);
     box.nodes[node_at(box, {0, 0, 0.5})] = {0.24, 0, 0.5};  // 1 % of a cell away from the next node
     const Real before = smallest_altitude_of(box);
-    const mesh::ThinnedSurface thinned = mesh::thin_knots(box, {.tolerance = 1e-3, .altitude = 0.1});
+    const mesh::RepairedSurface repaired = mesh::remove_flat_triangles(box, {.tolerance = 1e-3, .altitude = 0.1});
     CHECK(before < 0.011);
-    CHECK(smallest_altitude_of(thinned.surface) > 0.1);
-    CHECK(thinned.collapsed + thinned.flipped > 0);
-    CHECK(is_closed(thinned.surface));
-    CHECK(volume_of(thinned.surface) == Approx(1));
-    CHECK(mesh::surface_distance(box, thinned.surface).greatest() < 1e-12);
+    CHECK(smallest_altitude_of(repaired.surface) > 0.1);
+    CHECK(repaired.collapsed + repaired.flipped > 0);
+    CHECK(is_closed(repaired.surface));
+    CHECK(volume_of(repaired.surface) == Approx(1));
+    CHECK(mesh::surface_distance(box, repaired.surface).greatest() < 1e-12);
     // The corners of the box have not moved.
     for (const Real x : {-0.5, 0.5})
         for (const Real y : {-0.5, 0.5}) {
             const Vec3 corner(x, y, 0.5);
-            CHECK(thinned.surface.nodes[node_at(thinned.surface, corner)] == corner);
+            CHECK(repaired.surface.nodes[node_at(repaired.surface, corner)] == corner);
         }
 }
 
-TEST_CASE("knots of a ball go within the tolerance, and no further", "[unit]") {
+TEST_CASE("flat triangles of a ball go within the tolerance, and no further", "[unit]") {
     SurfaceMesh ball = mesh::boundary(mesh::ball(0.5, 8));
     // For every seventh triangle one node moves next to its neighbour, on the sphere.
     std::vector<bool> taken(ball.nodes.size(), false);
@@ -152,26 +152,28 @@ TEST_CASE("knots of a ball go within the tolerance, and no further", "[unit]") {
     Real last = before;
     for (const Real tolerance : {1e-9, 2e-3, 2e-2}) {
         INFO(tolerance);
-        const mesh::ThinnedSurface thinned = mesh::thin_knots(ball, {.tolerance = tolerance, .altitude = 0.05});
-        CHECK(is_closed(thinned.surface));
-        CHECK(mesh::surface_distance(ball, thinned.surface).greatest() <= tolerance);
-        const Real after = smallest_altitude_of(thinned.surface);
+        const mesh::RepairedSurface repaired =
+            mesh::remove_flat_triangles(ball, {.tolerance = tolerance, .altitude = 0.05});
+        CHECK(is_closed(repaired.surface));
+        CHECK(mesh::surface_distance(ball, repaired.surface).greatest() <= tolerance);
+        const Real after = smallest_altitude_of(repaired.surface);
         CHECK(after >= last);
         last = after;
-        const mesh::ThinnedSurface again = mesh::thin_knots(ball, {.tolerance = tolerance, .altitude = 0.05});
-        CHECK(again.surface.nodes == thinned.surface.nodes);
-        CHECK(again.surface.triangles == thinned.surface.triangles);
+        const mesh::RepairedSurface again =
+            mesh::remove_flat_triangles(ball, {.tolerance = tolerance, .altitude = 0.05});
+        CHECK(again.surface.nodes == repaired.surface.nodes);
+        CHECK(again.surface.triangles == repaired.surface.triangles);
     }
     CHECK(last > 2 * before);
 }
 
 TEST_CASE("triangles that are not flat stay, and so does the smallest closed surface", "[unit]") {
     const SurfaceMesh box = unit_box(3);
-    const mesh::ThinnedSurface same = mesh::thin_knots(box, {.tolerance = 1, .altitude = 0.1});
+    const mesh::RepairedSurface same = mesh::remove_flat_triangles(box, {.tolerance = 1, .altitude = 0.1});
     CHECK(same.surface.nodes == box.nodes);
     CHECK(same.surface.triangles == box.triangles);
     const SurfaceMesh tetrahedron = mesh::boundary({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1e-3}}, {{0, 1, 2, 3}}});
-    CHECK(mesh::thin_knots(tetrahedron, {.tolerance = 10, .altitude = 10}).surface.triangles.size() == 4);
+    CHECK(mesh::remove_flat_triangles(tetrahedron, {.tolerance = 10, .altitude = 10}).surface.triangles.size() == 4);
 }
 
 TEST_CASE("the tetrahedra that allow the least step are the slivers", "[unit]") {

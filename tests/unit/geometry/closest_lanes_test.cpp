@@ -68,7 +68,7 @@ TEST_CASE("eight distances of points and triangles are those of each alone", "[u
             // The scalar function replaces a triangle with a height below 1e-6 of its length by its longest edge.
             CHECK(distance == Approx(std::sqrt(expected.distance_squared)).margin(4e-6));
             CHECK(distance <= std::sqrt(expected.distance_squared) + 1e-12);
-            CHECK(found.height[l] == Approx(normal.dot(x[0][l] - x[1][l])).margin(1e-12));
+            CHECK(found.scaled_height[l] == Approx(normal.dot(x[0][l] - x[1][l])).margin(1e-12));
         }
     }
 }

@@ -72,7 +72,7 @@ std::vector<Real> exercise(Op op) {
     op.remember();
     for (int k = 0; k < 8; ++k) {
         const SweepChange change = op.accelerated_sweep(1);
-        seen.insert(seen.end(), {change.size, change.against});
+        seen.insert(seen.end(), {change.squared_change, change.reversal});
         if (k % 3 == 2) seen.push_back(op.error());
         if (k == 5) op.refresh_all();
         op.extrapolate(0.1 * k);

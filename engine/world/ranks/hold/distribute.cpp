@@ -108,7 +108,7 @@ std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSetti
     for (const BodyKind kind : model.bodies.kind) moves.push_back(kind == BodyKind::deformable);
     std::vector<BodyExtent> extents = extents_of(state, moves);
     rank_state.whole.owner = choose_owners(rank_state.whole, extents, settings, ranks.size());
-    rank_state.whole.holders = find_holders(rank_state.whole, rank_state.whole.owner, extents, ranks.size());
+    rank_state.whole.holders = find_holding_ranks(rank_state.whole, rank_state.whole.owner, extents, ranks.size());
     return extents;
 }
 
@@ -214,7 +214,7 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
             state.ranks.world_row.push_back(static_cast<Index>(world_row));
     }
     join_ranks(state.ranks, ranks, settings, state.record.counters.steps);
-    whole.holders = find_holders(whole, whole.owner, extents, ranks.size());
+    whole.holders = find_holding_ranks(whole, whole.owner, extents, ranks.size());
     const std::vector<std::uint8_t> all(state.ranks.world_row.size(), 1);
     replace_rows(state, all, rows, [](std::uint64_t) { return true; });
     return extents;

@@ -34,7 +34,7 @@ constexpr Real body_cost = 20;
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
     const Model& model = world.model;
     Real h = std::max(world.clock.step_before, world.scratch.parameters.h);
-    if (const Real trusted = trusted_step(model); std::isfinite(trusted)) h = std::max(h, trusted);
+    if (const Real longest = longest_allowed_step(model); std::isfinite(longest)) h = std::max(h, longest);
     const Real time = steps_of_margin * h;
     const BodyTable& bodies = model.bodies;
     const Real size = bodies.mean_edge[body] + bodies.round_radius[body] / 8 + bodies.contact_distance[body];
@@ -78,7 +78,7 @@ struct SearchHeader {
 };
 
 /// Data that all ranks exchange in a rank search.
-struct RankSearch {
+struct SearchData {
     std::vector<BodyExtent> extents;  // bodies in the order of their rows in the undivided world
     std::vector<FetchedUnit> requests;
     std::vector<Index> stale;  // rows in the undivided world of bodies whose copies are outdated
@@ -102,7 +102,7 @@ void keep_longest(std::vector<FetchedUnit>& fetched) {
     fetched.erase(std::unique(fetched.begin(), fetched.end(), is_same), fetched.end());
 }
 
-RankSearch search_ranks(WorldState& world) {
+SearchData search_ranks(WorldState& world) {
     RankState& ranks = world.ranks;
     const std::vector<BodyExtent> extents = extents_of(world, owned_bodies(world));
     std::vector<FetchedUnit> requests;
@@ -116,7 +116,7 @@ RankSearch search_ranks(WorldState& world) {
     put_rows(std::span<const BodyExtent>(extents), own_message);
     put_rows(std::span<const FetchedUnit>(requests), own_message);
     put_rows(std::span<const Index>(ranks.stale), own_message);
-    RankSearch all;
+    SearchData all;
     for (const RankMessage& message : ranks.ranks->gather_everywhere(own_message)) {
         MailReader reader(message);
         const auto of_rank = reader.take<SearchHeader>();
@@ -147,11 +147,11 @@ void insert(int rank, std::vector<int>& ranks) {
 /// compute the same change.
 class HolderChange {
 public:
-    HolderChange(WholeWorld& whole, const RankSearch& found, Column<std::int32_t> owner, int rank_count)
+    HolderChange(WholeWorld& whole, const SearchData& found, Column<std::int32_t> owner, int rank_count)
         : before_(whole), owner_(std::move(owner)), stale_(whole.size(), 0) {
         for (const Index world_row : found.stale) stale_[static_cast<std::size_t>(whole.unit[world_row])] = 1;
         note_requests(whole, found.requests);
-        holders_ = find_holders(whole, owner_, found.extents, rank_count);
+        holders_ = find_holding_ranks(whole, owner_, found.extents, rank_count);
         for (const BodyExtent& body : found.extents) {
             const Index unit = whole.unit[body.world_row];
             auto fetched = std::ranges::lower_bound(whole.fetched, unit, {}, &FetchedUnit::unit);
@@ -226,7 +226,7 @@ std::vector<int> partners_of(const HolderChange& change, const WholeWorld& whole
     return partners;
 }
 
-void move_bodies(WorldState& world, const RankSearch& found, const HolderChange& change) {
+void move_bodies(WorldState& world, const SearchData& found, const HolderChange& change) {
     RankState& ranks = world.ranks;
     WholeWorld& whole = ranks.whole;
     const int rank = ranks.rank;
@@ -353,7 +353,7 @@ void list_ghost_paths(WorldState& w, TaskGraph& g) {
 
 void update_ghosts(WorldState& world) {
     WholeWorld& whole = world.ranks.whole;
-    const RankSearch found = search_ranks(world);
+    const SearchData found = search_ranks(world);
     const int count = world.ranks.ranks->size();
     Column<std::int32_t> owner = whole.owner;
     const Real present = imbalance(owner, found.extents, count);
@@ -365,7 +365,7 @@ void update_ghosts(WorldState& world) {
 }
 
 void move_to_owners(WorldState& world, const Column<std::int32_t>& owner) {
-    const RankSearch found = search_ranks(world);
+    const SearchData found = search_ranks(world);
     move_bodies(world, found, HolderChange(world.ranks.whole, found, owner, world.ranks.ranks->size()));
 }
 

@@ -125,8 +125,8 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
     return total > 0 ? std::ranges::max(cost) * rank_count / total : 1;
 }
 
-std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
-                                           std::span<const BodyExtent> extents, int rank_count) {
+std::vector<std::vector<int>> find_holding_ranks(const WholeWorld& whole, std::span<const std::int32_t> owner,
+                                                 std::span<const BodyExtent> extents, int rank_count) {
     const auto owner_of = [&](Index world_row) { return owner[static_cast<std::size_t>(world_row)]; };
     std::vector<std::vector<int>> holders_of_unit(whole.size());
     const auto hold = [&](Index world_row, Index other) {

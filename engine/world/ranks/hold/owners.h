@@ -32,7 +32,7 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
 /// of a unit have the same holders: the owner of the unit, and the owners of all bodies whose boxes overlap the box of
 /// a body of the unit. If a body of the unit has `on_all`, all ranks hold the unit. `owner`: by row of the undivided
 /// world.
-std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
-                                           std::span<const BodyExtent> extents, int rank_count);
+std::vector<std::vector<int>> find_holding_ranks(const WholeWorld& whole, std::span<const std::int32_t> owner,
+                                                 std::span<const BodyExtent> extents, int rank_count);
 
 }  // namespace skerry

@@ -134,7 +134,9 @@ public:
     }
 
 private:
-    bool is_solved_here(Index body) const { return regions_.elsewhere.empty() || !regions_.elsewhere[body]; }
+    bool is_solved_here(Index body) const {
+        return regions_.solved_elsewhere.empty() || !regions_.solved_elsewhere[body];
+    }
 
     /// Sets the impulses of hold rows (contact rows that hold nodes along single directions) to zero if another rank
     /// solves them. Such rows are in no region of this rank, and still contain the impulses with which a solver would

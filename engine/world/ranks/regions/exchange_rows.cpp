@@ -45,7 +45,7 @@ private:
     int solver_of(Index group) {
         const Index root = regions_.sets.root(group);
         const int owner = regions_.label[root].owner;
-        if (!regions_.open[root] || owner == bodies_.rank) return -1;
+        if (!regions_.label_received[root] || owner == bodies_.rank) return -1;
         return bodies_.peer_of(owner) == -1 ? no_peer(owner) : bodies_.peer_of(owner);
     }
     /// Result of solver_of for a rank that shares no body with this rank: a number below -1.
@@ -65,16 +65,16 @@ private:
     /// solve the joints, ties and cables. Units of other ranks count as solved elsewhere until a message of their owner
     /// assigns them to this rank.
     void send_units() {
-        regions_.elsewhere.assign(regions_.unit.size(), 1);
+        regions_.solved_elsewhere.assign(regions_.unit.size(), 1);
         regions_.unit_count.assign(bodies_.peers.size(), 0);
         for_each_own_unit([&](Index body, int peer) {
             const bool sent = peer != -1 && reaches(peer, body);
-            regions_.elsewhere[body] = sent;
+            regions_.solved_elsewhere[body] = sent;
             if (sent) ++regions_.unit_count[peer];
         });
         for (std::size_t p = 0; p < bodies_.peers.size(); ++p) regions_.mail.put(p, regions_.unit_count[p]);
         for_each_own_unit([&](Index body, int peer) {
-            if (regions_.elsewhere[body])
+            if (regions_.solved_elsewhere[body])
                 regions_.mail.put(static_cast<std::size_t>(peer), bodies_.world_row[static_cast<std::size_t>(body)]);
         });
     }
@@ -85,11 +85,11 @@ private:
                 visit(static_cast<Index>(b), solver_of(bodies_.nodes[b].begin));
     }
 
-    /// Copies RankRegions::elsewhere (1: another rank solves the joints, ties and cables) of the first body of each
-    /// unit to the other bodies of the unit.
+    /// Copies RankRegions::solved_elsewhere (1: another rank solves the joints, ties and cables) of the first body of
+    /// each unit to the other bodies of the unit.
     void spread_over_units() {
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
-            regions_.elsewhere[b] = regions_.unit[b] != no_index && regions_.elsewhere[regions_.unit[b]];
+            regions_.solved_elsewhere[b] = regions_.unit[b] != no_index && regions_.solved_elsewhere[regions_.unit[b]];
     }
 
     bool send_contacts() {
@@ -141,7 +141,7 @@ private:
     void receive(const RankMessage& message) {
         MailReader reader(message);
         for (Index unit = reader.take<Index>(); unit > 0; --unit)
-            regions_.elsewhere[bodies_.row_of(reader.take<Index>())] = 0;
+            regions_.solved_elsewhere[bodies_.row_of(reader.take<Index>())] = 0;
         while (!reader.at_end()) {
             MailedContact mail = reader.take<MailedContact>();
             ContactRow& row = mail.row;

@@ -83,7 +83,7 @@ struct RankRegions {
     Column<Index> unit;
     // For each body: 1 if the rows of joints, ties and cables of its unit are solved by another rank. Empty if `unit`
     // is empty.
-    Column<std::uint8_t> elsewhere;
+    Column<std::uint8_t> solved_elsewhere;
     // True if the contacts that this rank solves are not those that it has found. The contact table then contains the
     // solved ones and `found` the found ones, until take_back_rows exchanges the tables.
     bool exchanged = false;
@@ -111,7 +111,7 @@ struct RankRegions {
     Column<Index> group;
     Column<Index> group_of;     // by contact: first node of one of its groups; no_index: none of its nodes can move
     // by node; valid at the roots of `sets`: 1 if another rank has sent a label for a group of the region
-    Column<std::uint8_t> open;
+    Column<std::uint8_t> label_received;
     Column<int> changed;           // by node; valid at the roots of `sets`: last round in which the label changed
     Column<Index> unit_count;      // by peer: number of own units that the peer solves
     Column<Index> order, source;   // working memory of RowExchange::merge

@@ -59,7 +59,7 @@ public:
         const std::size_t count = nodes.inverse_mass.size();
         regions.sets.start(count);
         regions.label.resize(count);
-        regions.open.resize(count);
+        regions.label_received.resize(count);
         regions.changed.resize(count);
         regions.group.clear();
     }
@@ -104,7 +104,7 @@ private:
         if (is_touched(group)) return;
         regions_.label[regions_.sets.root(group)] = {bodies_.name(group),
                                                      bodies_.owner[static_cast<std::size_t>(bodies_.body_of(group))]};
-        regions_.open[group] = 0;
+        regions_.label_received[group] = 0;
         regions_.changed[group] = 0;
         regions_.group.push_back(group);
     }
@@ -140,7 +140,7 @@ private:
         const Index group = bodies_.node_of(named.group);
         if (group == no_index || !is_touched(group)) return false;
         const Index root = regions_.sets.root(group);
-        regions_.open[root] = 1;
+        regions_.label_received[root] = 1;
         if (!(named.label.least < regions_.label[root].least)) return false;
         regions_.label[root] = named.label;
         regions_.changed[root] = round;

@@ -97,7 +97,7 @@ std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> ro
         exchanged[row] = 1;
         const OfBodyTables<Range> old = rows_before[b], fresh = rows_of_body(now, row);
         for (std::size_t table = 0; table < range_of.size(); ++table)
-            moves.down[b].*index_of[table] = (old.*range_of[table]).begin - (fresh.*range_of[table]).begin;
+            moves.shift_to_start[b].*index_of[table] = (old.*range_of[table]).begin - (fresh.*range_of[table]).begin;
     }
     return exchanged;
 }
@@ -163,7 +163,7 @@ public:
         for (std::size_t b = 0; b < moves_.body_now.size(); ++b) {
             if (moves_.body_now[b] == no_index || before_.bodies.implicit[b].size() == 0) continue;
             const Index row = before_.bodies.rigid[b].begin;
-            stiff[static_cast<std::size_t>(row - moves_.down[b].rigid)] =
+            stiff[static_cast<std::size_t>(row - moves_.shift_to_start[b].rigid)] =
                 std::move(model_.stiff_bodies[static_cast<std::size_t>(row)]);
         }
         model_.stiff_bodies = std::move(stiff);
@@ -179,7 +179,7 @@ public:
             model_.note_loads(b, false);
             if (!is_old[b] && model_.bodies.implicit[b].size() > 0) model_.stiffen(b);
         }
-        find_holders(model_);
+        find_holding_attachments(model_);
         note_forces(model_);
         model_.forced |= model_.of_ranks.forced;
         model_.links_open = true;

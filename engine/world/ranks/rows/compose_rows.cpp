@@ -97,7 +97,7 @@ private:
         for (std::size_t s = 0; s < sources_.size(); ++s) {
             RowSource& row_source = sources_[s];
             row_source.moves.body_now.assign(row_source.world_row.size(), no_index);
-            row_source.moves.down.resize(row_source.world_row.size());
+            row_source.moves.shift_to_start.resize(row_source.world_row.size());
             for (std::size_t b = 0; b < row_source.world_row.size(); ++b)
                 if (row_source.gives(b)) picks_.push_back({row_source.world_row[b], s, b});
         }
@@ -112,8 +112,8 @@ private:
     void append_bodies() {
         constexpr auto range_of = OfBodyTables<Range>::members();
         constexpr auto index_of = OfBodyTables<Index>::members();
-        const auto down_of = [&](const Pick& pick) -> OfBodyTables<Index>& {
-            return sources_[pick.source].moves.down[pick.row];
+        const auto shift_of = [&](const Pick& pick) -> OfBodyTables<Index>& {
+            return sources_[pick.source].moves.shift_to_start[pick.row];
         };
         std::vector<OfBodyTables<Range>> old, now(picks_.size());
         for (const Pick& pick : picks_) old.push_back(rows_of_body(*sources_[pick.source].model, pick.row));
@@ -122,7 +122,7 @@ private:
             for (std::size_t row = 0; row < picks_.size(); ++row) {
                 const Range rows = old[row].*range_of[table];
                 now[row].*range_of[table] = {end, end + rows.size()};
-                down_of(picks_[row]).*index_of[table] = rows.begin - end;
+                shift_of(picks_[row]).*index_of[table] = rows.begin - end;
                 end += rows.size();
             }
             for (std::size_t c = 0; c < columns_[table].size(); ++c) {
@@ -132,7 +132,7 @@ private:
             }
         }
         for (std::size_t row = 0; row < picks_.size(); ++row)
-            renumber_rows_of_body(to_, row, now[row], down_of(picks_[row]));
+            renumber_rows_of_body(to_, row, now[row], shift_of(picks_[row]));
     }
 
     /// Fills column `c` of a table with the rows of all picked bodies. `rows`: for each picked body, its rows in the
@@ -172,10 +172,10 @@ private:
             const RowSource& source = sources_[pick.source];
             const NodeClusters& from = source.model->clusters;
             const std::span<const Index> old = std::as_const(from.nodes)[pick.row];
-            const Index down = source.moves.down[static_cast<std::size_t>(from.body[pick.row])].nodes;
+            const Index shift = source.moves.shift_to_start[static_cast<std::size_t>(from.body[pick.row])].nodes;
             std::vector<Index> nodes(old.begin(), old.end());
             for (std::size_t i = 0; i < nodes.size(); ++i) {
-                nodes[i] -= down;
+                nodes[i] -= shift;
                 clusters.cluster_of[nodes[i]] = static_cast<Index>(clusters.size());
                 clusters.index_in_cluster[nodes[i]] = static_cast<Index>(i);
             }
@@ -235,7 +235,7 @@ private:
             script.key_end = script.key_begin + keys.size();
             append_rows(from.keyframe, keys, to.keyframe);
             const auto body = static_cast<std::size_t>(to.body.back());
-            for (Index& node : rows_of(to.node, to.nodes.back())) node -= source.moves.down[body].nodes;
+            for (Index& node : rows_of(to.node, to.nodes.back())) node -= source.moves.shift_to_start[body].nodes;
             to.body.back() = source.moves.body_now[body];
         }
     }

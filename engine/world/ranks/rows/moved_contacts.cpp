@@ -139,7 +139,7 @@ void renumber_crossings(const RowMoves& moves, std::span<const Index> body_of_no
         if (now(row.first_body) == no_index || (row.second_body != no_index && now(row.second_body) == no_index))
             continue;
         for (Index& node : row.stencil.node)
-            node -= moves.down[static_cast<std::size_t>(body_of_node[static_cast<std::size_t>(node)])].nodes;
+            node -= moves.shift_to_start[static_cast<std::size_t>(body_of_node[static_cast<std::size_t>(node)])].nodes;
         row.first_body = now(row.first_body);
         row.second_body = now(row.second_body);
         kept.push_back(row);

@@ -20,7 +20,7 @@ bool prepare_tie_rows(const TieInputs& ties, const StepParameters& p, ContactTab
     return prepare_ties(ties, step, contacts, rows, blocks);
 }
 
-Index store(const TieRowTable& rows, const TiedMeans& means, Real start, const StepParameters& p, TieTable& ties) {
+Index store(const TieRowTable& rows, const BallTies& means, Real start, const StepParameters& p, TieTable& ties) {
     return store_ties(rows, means, {start + p.h, p.h, p.kick_time}, ties);
 }
 
@@ -39,7 +39,7 @@ void list_taken_rows(WorldState& w, TaskGraph& g) {
 void list_tie_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage_with_result("contact/store_ties", w.scratch.findings.released_ties, store, read(w.scratch.ties),
-                        inputs<TiedMeans>(w.scratch.cables, m.bodies, m.nodes), value(w.clock.time),
+                        inputs<BallTies>(w.scratch.cables, m.bodies, m.nodes), value(w.clock.time),
                         value(w.scratch.parameters), make(m.ties), if_any_tie(m), if_taken(w));
 }
 

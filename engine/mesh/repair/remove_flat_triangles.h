@@ -6,12 +6,12 @@
 
 namespace skerry::mesh {
 
-struct KnotSettings {
+struct RepairSettings {
     Real tolerance = 0;  // largest distance that the surface may move, > 0 [m]
     Real altitude = 0;   // triangles are repaired if their smallest altitude is less than this [m]
 };
 
-struct ThinnedSurface {
+struct RepairedSurface {
     SurfaceMesh surface;
     std::size_t collapsed = 0, flipped = 0;  // number of collapsed edges, and number of flipped edges
 };
@@ -23,6 +23,6 @@ struct ThinnedSurface {
 /// and the new surface stay within the tolerance of each other. The surface must be closed, with two triangles at every
 /// edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness of the body. The
 /// result is deterministic.
-ThinnedSurface thin_knots(const SurfaceMesh& surface, const KnotSettings& settings);
+RepairedSurface remove_flat_triangles(const SurfaceMesh& surface, const RepairSettings& settings);
 
 }  // namespace skerry::mesh

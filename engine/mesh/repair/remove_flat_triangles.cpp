@@ -1,4 +1,4 @@
-#include "engine/mesh/repair/thin_knots.h"
+#include "engine/mesh/repair/remove_flat_triangles.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -55,9 +55,9 @@ struct Change {
     Real altitude = 0;             // smallest altitude of the new triangles [m]
 };
 
-class Thinner {
+class TriangleRepair {
 public:
-    Thinner(const SurfaceMesh& surface, const KnotSettings& settings)
+    TriangleRepair(const SurfaceMesh& surface, const RepairSettings& settings)
         : settings_(settings), original_(surface), nodes_(surface.nodes), around_(surface.nodes.size()) {
         for (const Triangle& t : surface.triangles) {
             add(t);
@@ -65,8 +65,8 @@ public:
         }
     }
 
-    ThinnedSurface run() {
-        ThinnedSurface result;
+    RepairedSurface run() {
+        RepairedSurface result;
         for (std::size_t t = 0; t < triangles_.size(); ++t) queue_if_flat(static_cast<Index>(t));
         while (!flat_.empty()) {
             const Index worst = flat_.begin()->second;
@@ -279,7 +279,7 @@ private:
         return surface;
     }
 
-    KnotSettings settings_;
+    RepairSettings settings_;
     TriangleTree original_;
     std::vector<Vec3> nodes_;
     std::vector<Triangle> triangles_;  // all triangles, including removed ones, for which alive_ is false
@@ -295,8 +295,8 @@ private:
 
 }  // namespace
 
-ThinnedSurface thin_knots(const SurfaceMesh& surface, const KnotSettings& settings) {
-    return Thinner(surface, settings).run();
+RepairedSurface remove_flat_triangles(const SurfaceMesh& surface, const RepairSettings& settings) {
+    return TriangleRepair(surface, settings).run();
 }
 
 }  // namespace skerry::mesh
