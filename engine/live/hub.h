@@ -102,10 +102,11 @@ private:
     struct Client {
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
-        bool closed = false;                          // true: its thread ends the connection
-        FrameContent requested_content = FrameContent::motion;  // smallest requested_content that has all fields that the browser shows
-        bool pulls = false;                           // true: the browser pulls a body
-        std::deque<std::string> texts;                // messages that wait for its thread
+        bool closed = false;  // true: its thread ends the connection
+        FrameContent requested_content =
+            FrameContent::motion;       // smallest requested_content that has all fields that the browser shows
+        bool pulls = false;             // true: the browser pulls a body
+        std::deque<std::string> texts;  // messages that wait for its thread
         // number of the run that its stream shows; 0: it needs a new stream
         std::uint64_t run = 0;
         std::uint64_t snapshot = 0;        // number of the last snapshot that the browser got

@@ -46,7 +46,8 @@ struct VelocityRow {
 /// Quantity of an equation that keeps its value of the step when the contact impulses change.
 /// - velocity: the velocity of the row. The impulse of the row in the step is known.
 /// - impulse: the impulse of the row.
-/// - velocity_with_unknown_impulse: the velocity of the row. The impulse of the row in the step is not known; find_held_impulses() computes it.
+/// - velocity_with_unknown_impulse: the velocity of the row. The impulse of the row in the step is not known;
+/// find_held_impulses() computes it.
 enum class KeptQuantity { velocity, impulse, velocity_with_unknown_impulse };
 
 struct EquationRow {

@@ -40,8 +40,8 @@ Energy energy_of(const Model& model, Real time, Real dissipated) {
 namespace {
 
 /// Counts the elements of a body whose volume ratio det F is below 0.2. Does nothing if the body has no smoothed
-/// elements. A smoothed element has the mean deformation gradient F of several tetrahedra. If these are compressed against
-/// each other, det F can be this small although no tetrahedron is compressed this much.
+/// elements. A smoothed element has the mean deformation gradient F of several tetrahedra. If these are compressed
+/// against each other, det F can be this small although no tetrahedron is compressed this much.
 void count_compressed_elements(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real compressed = 0.2;
     const Range blocks = model.bodies.blocks[body];

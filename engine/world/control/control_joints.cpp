@@ -180,8 +180,8 @@ bool collisions_off_by_another(const JointTable& table, std::size_t joint) {
 }
 
 /// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset. The
-/// leader can mimic a further joint; the last joint of this chain is the head. MimicRelation gives the coordinate of a joint
-/// by that of its head: ratio * (coordinate of the head) + offset.
+/// leader can mimic a further joint; the last joint of this chain is the head. MimicRelation gives the coordinate of a
+/// joint by that of its head: ratio * (coordinate of the head) + offset.
 struct MimicRelation {
     Index head;
     Real ratio = 1, offset = 0;

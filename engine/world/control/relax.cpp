@@ -281,11 +281,11 @@ private:
     World& world_;
     WorldState& state_;
     RelaxSettings settings_;
-    UnionFind sets_;                     // sets of bodies that joints, ties and the like connect
-    std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
-    std::vector<BodyBalance> bodies_;    // by body
-    // Kinetic energies of the sets of joined bodies, at the index of the root of a set in `sets_` [J]: kinetic_before_ before
-    // this step, kinetic_now_ after it.
+    UnionFind sets_;                   // sets of bodies that joints, ties and the like connect
+    std::vector<Vec3> before_;         // velocities of all nodes before the step [m/s]
+    std::vector<BodyBalance> bodies_;  // by body
+    // Kinetic energies of the sets of joined bodies, at the index of the root of a set in `sets_` [J]: kinetic_before_
+    // before this step, kinetic_now_ after it.
     std::vector<Real> kinetic_before_, kinetic_now_{};
     Real largest_ = 0;  // largest out-of-balance force of a body so far [N]
 };

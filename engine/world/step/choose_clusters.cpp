@@ -29,8 +29,8 @@ constexpr Real entry_cost = 0.7;
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
 /// Upper bound of the moment of inertia that clusters may add to a body. The bound is the larger of two values:
-/// share_of_moment times the smallest principal moment I of the body, and share_of_lumping times the amount by which lumping of
-/// the masses increases I. In typical meshes the bound is 3 to 20 % of I.
+/// share_of_moment times the smallest principal moment I of the body, and share_of_lumping times the amount by which
+/// lumping of the masses increases I. In typical meshes the bound is 3 to 20 % of I.
 constexpr Real share_of_moment = 0.01, share_of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;

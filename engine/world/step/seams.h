@@ -49,10 +49,10 @@ struct ForceElement {
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 
-/// Factor on the stiffness of a force whose law has a kink, in its contribution to ForceElement::add_rate. Kinks are the
-/// rest length of a one-sided spring, and the pressure at which a liquid boils. Motion across a kink gains energy. A
-/// mass that bounces on a one-sided spring leaves it with 3.4 times its energy at the stable step of the linear law, and
-/// with 1.004 times its energy at a third of this step (symplectic Euler, mean over all phases of the impact). The
+/// Factor on the stiffness of a force whose law has a kink, in its contribution to ForceElement::add_rate. Kinks are
+/// the rest length of a one-sided spring, and the pressure at which a liquid boils. Motion across a kink gains energy.
+/// A mass that bounces on a one-sided spring leaves it with 3.4 times its energy at the stable step of the linear law,
+/// and with 1.004 times its energy at a third of this step (symplectic Euler, mean over all phases of the impact). The
 /// contribution is a squared frequency, so the factor is 3^2.
 inline constexpr Real kink_factor = 9;
 

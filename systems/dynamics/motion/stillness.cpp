@@ -69,7 +69,8 @@ public:
             if (!first && furthest > limits::growth * least)
                 still_time = 0;
             else if (!first && (drift_grows || !is_balanced(half_time) || !keeps_shape(shape_grows)))
-                still_time = half_time;  // this half_time now counts as the first, with which the next half_time is compared
+                still_time =
+                    half_time;  // this half_time now counts as the first, with which the next half_time is compared
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = shape_grows ? shape_drift : 0;
             begin_half();
@@ -80,8 +81,8 @@ private:
     /// True if the mean forces on the nodes, over the last two halves of the sleep time, are in balance without the
     /// damping forces. Damping must not be needed for the balance, because it does not act at rest. The force without
     /// damping on a mass m is m (a + c v) with the acceleration a, the velocity v and the damping rate c. The mean of
-    /// a, with triangular weights over both halves, is (d2 - d1) / half_time^2, where d1 and d2 are the displacements of the
-    /// node in the two halves. |d2 - d1| is at most the sum of the drifts of both halves.
+    /// a, with triangular weights over both halves, is (d2 - d1) / half_time^2, where d1 and d2 are the displacements
+    /// of the node in the two halves. |d2 - d1| is at most the sum of the drifts of both halves.
     bool is_balanced(Real half_time) const {
         // In a body with held nodes damping acts on the complete velocity, else only on the velocity relative to the
         // rigid motion.

@@ -43,10 +43,10 @@ struct RecoveryPlan {
     // without a row of `faces` is a weighted sum of values of the elements around it. The value at any other node of
     // this list is found by Newton's method.
     std::vector<Index> face_of_smooth_node;
-    // For each row of `face_of_smooth_node`: factors of the elements around its node, by place, ascending. For a node without a row
-    // of `faces` they are the factors of a fit. For a node with such a row they are the factors of a mean, which starts
-    // Newton's method and replaces its result if the method fails. `strained`: elements with strain. `volumetric`:
-    // elements that have only the volumetric part of the stress.
+    // For each row of `face_of_smooth_node`: factors of the elements around its node, by place, ascending. For a node
+    // without a row of `faces` they are the factors of a fit. For a node with such a row they are the factors of a
+    // mean, which starts Newton's method and replaces its result if the method fails. `strained`: elements with strain.
+    // `volumetric`: elements that have only the volumetric part of the stress.
     Ragged<Term> strained, volumetric;
 
     struct Face {

@@ -109,7 +109,7 @@ struct RankRegions {
     // First nodes of the groups that contacts of this rank touch, and of the units that this rank owns. All nodes of
     // such a unit form one group.
     Column<Index> group;
-    Column<Index> group_of;     // by contact: first node of one of its groups; no_index: none of its nodes can move
+    Column<Index> group_of;  // by contact: first node of one of its groups; no_index: none of its nodes can move
     // by node; valid at the roots of `sets`: 1 if another rank has sent a label for a group of the region
     Column<std::uint8_t> label_received;
     Column<int> changed;           // by node; valid at the roots of `sets`: last round in which the label changed
