@@ -104,7 +104,7 @@ private:
         LiveLink* link = nullptr;
         bool closed = false;  // true: its thread ends the connection
         FrameContent requested_content =
-            FrameContent::motion;       // smallest requested_content that has all fields that the browser shows
+            FrameContent::motion;       // smallest content that has all fields that the browser shows
         bool pulls = false;             // true: the browser pulls a body
         std::deque<std::string> texts;  // messages that wait for its thread
         // number of the run that its stream shows; 0: it needs a new stream

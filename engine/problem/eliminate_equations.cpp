@@ -90,7 +90,7 @@ public:
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
-            // beside_core() returns the lever arm from the core of a round body (its centre or axis) to the contact
+            // core_arm() returns the lever arm from the core of a round body (its centre or axis) to the contact
             // point, times the sum of the weights of all nodes of the body. So it is added only once, with the first of
             // these nodes.
             const Index frame = inputs_.rigid.nodes.row(node);

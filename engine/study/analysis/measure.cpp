@@ -221,7 +221,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     if (std::isnan(r.contact))
         return decide(StudyVerdict::not_measured,
                       "the contact error is unknown, because no run with another tolerance has a result");
-    // fraction of the wanted error; an irregular part of the error (see `matters`) below it is ignored, too
+    // fraction of the wanted error; an irregular part of the error (see least_share_of_bar) below it is ignored, too
     constexpr Real share_of_wanted = 0.1;
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {

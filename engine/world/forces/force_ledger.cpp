@@ -287,7 +287,7 @@ bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
 /// - If both bodies were asleep and the step has no contact between them, the pair gets the impulse of its mean force
 ///   at rest, which is still / still_seconds.
 /// - If a body was awake but both stayed still, the step is added to still_seconds.
-/// - If a body has moved, `still` and still_seconds are set to zero.
+/// - If a body has moved, sums_at_rest and still_seconds are set to zero.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> was_asleep, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;

@@ -50,7 +50,7 @@ public:
         PairKey key{};
         // number of contacts in the last step that began with a body of the pair awake
         ContactSums sums{};          // sums of contact impulses over the call of advance
-        ContactSums sums_at_rest{};  // sums of contact impulses over the time in which both objects were sums_at_rest
+        ContactSums sums_at_rest{};  // sums of contact impulses over the time in which both objects were still
         Real still_seconds = 0;      // time over which `sums_at_rest` is summed [s]
         // number of contacts in the last step at the start of which a body of the pair was awake
         Index still_contacts = 0;

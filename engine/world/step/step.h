@@ -204,7 +204,7 @@ Real lag_between_steps(const WorldState& world);
 struct StepPlan {
     Real h = 0;       // s
     Real steps = 1;   // number of steps of length `h` in the planned interval, this step included
-    Real stable = 0;  // longest step that stability and the settings allow (trusted_step) [s]
+    Real stable = 0;  // longest step that stability and the settings allow (longest_allowed_step) [s]
     // Length `stable`, or less if a body with a joint or tie would rotate too far in such a step (step_of_turns) [s].
     // An attempt is not repeated with a shorter step if its step is shorter than a certain fraction of this length
     // (most_shortening in transaction.cpp).

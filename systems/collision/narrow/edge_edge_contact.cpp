@@ -118,7 +118,7 @@ private:
     }
 
     std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
-    // for each face: greatest scalar product of `into_` and a direction at which faces() accepts the direction [m]
+    // for each face: greatest scalar product of `into_` and a direction that can_touch_along() accepts [m]
     std::array<Real, 2> border_;
     Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;

@@ -68,7 +68,7 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
 
 /// Adds the impulses on held nodes that come from the added inertia of the implicit elements (docs/methods/clusters.md
 /// 1). This inertia couples the nodes of an element: a velocity change dv_k of a moving node k requires the impulse
-/// beta c V (g_k.g_n) dv_k on each held node n. The element has the factor beta (inertia_of_stiffness()), the volume V,
+/// beta c V (g_k.g_n) dv_k on each held node n. The element has the factor beta (inertia_factor()), the volume V,
 /// the shape gradients g, and the assumed modulus c (stiffness that the implicit integration assumes). Velocity changes
 /// by damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {

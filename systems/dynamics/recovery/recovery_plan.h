@@ -73,7 +73,7 @@ struct RecoveryPlan {
     // For each of `nodes`: its row of `face_of_smooth_node`, or no_index for a node at an edge, corner or interface of
     // materials. The value of such a node is extrapolated.
     std::vector<Index> smooth_of;
-    // Terms of the sums that give the extrapolated values. `donors`: Term::from is a row of `smooth`.
+    // Terms of the sums that give the extrapolated values. `donors`: Term::from is a row of face_of_smooth_node.
     // `strained_around`, `volumetric_around`: Term::from is a place; these terms are used only for materials with too
     // few donors for a fit.
     Ragged<Term> donors, strained_around, volumetric_around;

@@ -29,8 +29,8 @@ void subtract(Real value, Real* from) {
 }
 
 /// Operations that write one register of a product to a column of c. `subtract_from` subtracts the register. `store`
-/// overwrites the column. TakeOffLast subtracts only the last `count` entries of the register. It serves the last rows
-/// of c if they do not fill a register: the register then begins with rows that are already done.
+/// overwrites the column. SubtractLastRows subtracts only the last `count` entries of the register. It serves the last
+/// rows of c if they do not fill a register: the register then begins with rows that are already done.
 constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
 struct SubtractLastRows {
     Index count;
