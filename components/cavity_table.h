@@ -47,7 +47,10 @@ struct CavityTable {
     // is 1 or the law is `pressure`.
     Column<Real> volume;
     Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
-    Column<Real> volume_now;    // volume at the start of this step [m^3]
+    // Power that the forces of the last step exert on free nodes with their velocities after this step [W]; unused for
+    // the law `pressure`.
+    Column<Real> power;
+    Column<Real> volume_now;  // volume at the start of this step [m^3]
     // The next columns have one row per face.
     Column<std::array<Index, 3>> face;  // node numbers in the mesh of the body
     // Columns of the matrix: positions of the three nodes at the end of the last step [m]. Unused if `closed` is 1 or
@@ -86,6 +89,7 @@ struct CavityTable {
         visit("mass", mass, ColumnRole::state);
         visit("volume", volume, ColumnRole::state);
         visit("pressure_now", pressure_now, ColumnRole::state);
+        visit("power", power, ColumnRole::state);
         visit("volume_now", volume_now, ColumnRole::scratch);
     }
     void for_each_column(auto&& visit) {

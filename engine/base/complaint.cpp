@@ -53,11 +53,42 @@ void require_finite(std::string_view object, std::string_view field, const Vec3&
 
 namespace {
 
-/// True if two parts of messages name one object, such as body "ball" and body 'ball'.
-bool name_one_object(std::string_view a, std::string_view b) {
-    const auto is_quote = [](char c) { return c == '"' || c == '\''; };
-    return !a.empty() &&
-           std::ranges::equal(a, b, [&](char x, char y) { return x == y || (is_quote(x) && is_quote(y)); });
+bool is_quote(char c) {
+    return c == '"' || c == '\'';
+}
+
+/// True if `text` ends with `end`, where both kinds of quotes count as equal.
+bool ends_with_name(std::string_view text, std::string_view end) {
+    return text.size() >= end.size() &&
+           std::ranges::equal(text.substr(text.size() - end.size()), end,
+                              [](char x, char y) { return x == y || (is_quote(x) && is_quote(y)); });
+}
+
+/// True if `object` names the object at `place` again, such as in (place: object)
+/// - body "ball": body 'ball'
+/// - body "ball": bodies[0].pin[0]: attachment of body 'ball'
+/// - cavity "tyre": cavities[0]: cavity of body 'ball'
+/// - materials.rubber: material
+bool is_named_by(const Complaint& place, std::string_view object) {
+    if (object.empty()) return false;
+    const std::string kind = place.object.substr(0, place.object.find(' ')) + " ";
+    if (!place.object.empty() &&
+        (ends_with_name(object, place.object) || (object.starts_with(kind) && !is_quote(object[kind.size()]))))
+        return true;
+    const std::string_view path = place.field;
+    for (std::size_t at = path.find(object); at != path.npos; at = path.find(object, at + 1)) {
+        std::string_view rest = path.substr(at + object.size());
+        if (rest.starts_with('s')) rest.remove_prefix(1);  // materials contain objects of the kind material
+        const auto is_limit = [](char c) { return c == '.' || c == '['; };
+        if ((at == 0 || is_limit(path[at - 1])) && (rest.empty() || is_limit(rest.front()))) return true;
+    }
+    return false;
+}
+
+/// Removes a part from the start of a message.
+void erase_part(std::string& text, std::string& part) {
+    text.erase(0, part.size() + 2);
+    part.clear();
 }
 
 }  // namespace
@@ -65,8 +96,12 @@ bool name_one_object(std::string_view a, std::string_view b) {
 SceneError error_at(const Complaint& context, const SceneError& inner) {
     Complaint complaint = inner.complaint();
     std::string text = inner.what();
-    if (name_one_object(context.object, complaint.object) && text.starts_with(complaint.object + ": "))
-        text.erase(0, complaint.object.size() + 2);
+    const auto begins_with = [&](const std::string& part) { return !part.empty() && text.starts_with(part + ": "); };
+    if (begins_with(complaint.object) && is_named_by(context, complaint.object)) {
+        erase_part(text, complaint.object);
+        if (begins_with(complaint.field) && context.field.ends_with("." + complaint.field))
+            erase_part(text, complaint.field);
+    }
     if (complaint.file.empty()) {
         complaint.file = context.file;
         if (!context.object.empty()) complaint.object = context.object;

@@ -32,7 +32,8 @@ inline constexpr const char* run_examples = R"(Examples:
   skerry run --restart bucket.skerry --checkpoint bucket.skerry --every 0.5
 
 At the end the run prints a short summary: the scene, the computing time, the main results, warnings (reasons not to
-rely on the result, each with a remedy) and the written files. --profile adds step limits, solver statistics, energies,
+rely on the result, each with a remedy) and the written files. A run refuses outputs that another run is writing; a file
+whose name ends in .lock marks them. --profile adds step limits, solver statistics, energies,
 the times of all stages and the hash of the final state. --stats writes all of these as JSON.
 
 --restart reads the scene file, the settings, the simulated time of the run and the times of the frames from the

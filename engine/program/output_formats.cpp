@@ -23,7 +23,9 @@ std::span<const OutputFormat> output_formats() {
          false, [](Request request) { return probe_series(request.path, request.scene); }},
         {"--trace", "file for a trace of all threads, for Perfetto or chrome://tracing", false,
          [](Request request) { return thread_trace(request.path); }},
-        {"--export-problems", "folder for contact problems of single steps, as local problems in FCLIB's HDF5 format",
+        {"--export-problems",
+         "folder for contact problems of single steps, as local problems in FCLIB's HDF5 format; those "
+         "of an earlier run are replaced",
          true, [](Request request) { return exported_problems(request.path, request.scene, request.options); }},
         {"--stats", "JSON file for all statistics of the run", false,
          [](Request request) { return statistics_file(request.path, request.result); }},

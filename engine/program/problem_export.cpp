@@ -1,16 +1,20 @@
 #include "engine/program/problem_export.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "engine/base/complaint.h"
+#include "engine/base/separate_outputs.h"
 #include "engine/program/progress.h"
 #include "skerry/problem.h"
 
@@ -32,6 +36,27 @@ std::uint64_t default_every(double steps) {
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
+/// Removes a label and a number from the start of `text`. Returns no number if `text` starts differently.
+std::optional<std::uint64_t> take_number(std::string_view& text, std::string_view label) {
+    if (!text.starts_with(label)) return {};
+    const char* const begin = text.data() + label.size();
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
+    if (error != std::errc()) return {};
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return number;
+}
+
+/// Number of the step if this is the name of an exported file of the scene.
+std::optional<std::uint64_t> step_of_file(std::string_view name, const std::string& scene) {
+    if (!name.starts_with(scene)) return {};
+    name.remove_prefix(scene.size());
+    const std::optional<std::uint64_t> step = take_number(name, "-step");
+    if (!step || !take_number(name, "-contacts")) return {};
+    take_number(name, "-region");
+    return name == ".hdf5" ? step : std::nullopt;
+}
+
 /// Writes contact problems during the steps. If writing fails within a step, the next call of sample() or close()
 /// throws the error.
 class ExportedProblems final : public Writer {
@@ -40,6 +65,11 @@ public:
         : folder_(folder), scene_(scene), of_(options.problems_of), every_(options.problems_every) {}
 
     void open(World& world, const RunStart& start) override {
+        const std::uint64_t steps = start.resumed() ? world.report().steps : 0;
+        earlier_ = EarlierFiles(folder_, [&](const std::string& name) {
+            const std::optional<std::uint64_t> step = step_of_file(name, scene_);
+            return step && *step > steps;  // a resumed run keeps the problems of the steps before the checkpoint
+        });
         const auto take = [this, &world](const StepProblem& step) {
             try {
                 write_step(step);
@@ -52,7 +82,10 @@ public:
                                      every_ ? static_cast<std::uint64_t>(*every_) : default_every(start.step_count));
     }
     void sample(const World&) override { throw_failure(); }
-    void close(const World&) override { throw_failure(); }
+    void close(const World&) override {
+        throw_failure();
+        earlier_.remove();
+    }
     double seconds_in_steps() const override { return seconds_; }
     std::string written() const override {
         return std::to_string(files_) + " contact problems of " + std::to_string(steps_) + " steps to " +
@@ -70,6 +103,7 @@ private:
     std::string scene_;
     ProblemsOf of_;
     std::optional<int> every_;  // number of steps between two exported steps; default: default_every()
+    EarlierFiles earlier_;
     long files_ = 0, steps_ = 0;
     double seconds_ = 0;  // wall time of the export [s]
     std::exception_ptr failure_;
@@ -77,6 +111,7 @@ private:
 
 void ExportedProblems::write_step(const StepProblem& step) {
     const Stopwatch watch;
+    earlier_.remove();
     const std::string name = scene_ + numbered("step", 6, static_cast<std::int64_t>(step.step));
     if (of_ == ProblemsOf::step) {
         write(step.problem, step, name + numbered("contacts", 1, step.problem.contacts()), step.impulse);

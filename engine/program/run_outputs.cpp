@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 #include "engine/base/complaint.h"
@@ -67,8 +69,31 @@ RunOutputs::RunOutputs(const RunOptions& options, Scene& scene, const RunStart& 
                 refuse_in(file.file.string(), file.name, {},
                           std::string("a file that ") + output.option + " also writes", "a different file",
                           "choose another file name");
+    reserve(options, scene.name);
     for (const Output& output : outputs_) output.writer->open(scene.world, start);
     result_.frames = static_cast<int>(start.frames);
+}
+
+void RunOutputs::reserve(const RunOptions& options, const std::string& scene) {
+    std::set<std::filesystem::path> reserved;
+    const auto lock = [&](const char* option, const std::filesystem::path& output, std::string_view name) {
+        std::error_code error;
+        const std::filesystem::file_status found = std::filesystem::status(output, error);
+        // a device such as /dev/null
+        const bool is_stream = exists(found) && !is_regular_file(found) && !is_directory(found);
+        if (output.empty() || is_stream) return;
+        std::filesystem::path lock_file = std::filesystem::weakly_canonical(std::filesystem::absolute(output));
+        if (!name.empty()) lock_file /= name;
+        lock_file += ".lock";
+        if (reserved.insert(lock_file).second)
+            locks_.emplace_back(lock_file, Complaint{output.string(), option, {}, {}, {}, {}},
+                                "skerry run " + std::filesystem::absolute(options.scene).string());
+    };
+    lock("--checkpoint", options.checkpoint, {});
+    // Runs of scenes with different names may share a folder. A name that is not a file name is refused by open().
+    const std::string name = std::filesystem::path(scene).filename().string();
+    for (const OutputFormat& format : output_formats())
+        lock(format.option, path_of(format, options), format.is_folder ? name : std::string_view());
 }
 
 void RunOutputs::for_each(FunctionRef<void(Writer&)> write) {

@@ -1,9 +1,12 @@
 // The requested outputs of a run. If an output fails, the other outputs continue.
 #pragma once
 
+#include <deque>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "engine/base/separate_outputs.h"
 #include "engine/output/writer.h"
 #include "engine/program/commands.h"
 #include "engine/program/run_result.h"
@@ -14,8 +17,8 @@ namespace skerry {
 class RunOutputs {
 public:
     /// Opens the outputs that `options` request. Throws SceneError if an output cannot be written, or would replace
-    /// another output or an input. Later failures, and the time spent on writing, are added to `result`. `options`,
-    /// `scene` and `result` must outlive the object.
+    /// another output or an input, or if another process writes it. Later failures and the time spent are added to
+    /// `result`. `options`, `scene` and `result` must outlive the object.
     RunOutputs(const RunOptions& options, Scene& scene, const RunStart& start, RunResult& result);
 
     /// Passes the world to all outputs. Must be called after every call of World::advance.
@@ -33,10 +36,13 @@ private:
         std::unique_ptr<Writer> writer;
         bool failed = false;
     };
+    /// Locks all outputs and the checkpoint file until the object is destroyed.
+    void reserve(const RunOptions& options, const std::string& scene);
     /// Calls `write` for each output that has not failed. If the call throws, the output counts as failed, and the
     /// error is added to the result and printed to standard error at once.
     void for_each(FunctionRef<void(Writer&)> write);
 
+    std::deque<OutputLock> locks_;
     std::vector<Output> outputs_;
     RunResult& result_;
 };

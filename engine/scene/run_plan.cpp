@@ -82,8 +82,11 @@ RunPlan plan_run(const Scene& scene, const std::filesystem::path& file, std::opt
     RunPlan plan{.seconds = seconds.value_or(scene.seconds), .frame_step = scene.frame_step};
     if (frames_per_second) plan.frame_step = 1 / *frames_per_second;
     plan.require_countable(file);
-    if (scene.probes.empty() && scene.recorded.empty()) return plan;
-    plan.probe_step = scene.probe_step;
+    if (!scene.probes.empty() || !scene.recorded.empty()) plan.probe_step = scene.probe_step;
+    if (const std::optional<Real> step = scene.world.settings().step_size)
+        expect_countable(file, "steps of settings.step_size per frame or sample of the probes",
+                         plan.longest_call() / *step, "increase settings.step_size (--step), or shorten the frames");
+    if (!(plan.probe_step > 0)) return plan;
     const double samples = std::min(plan.frame_step, plan.seconds) / scene.probe_step;
     expect_countable(file, "samples of the probes per frame", samples, "increase probe_step");
     const bool in_whole_frames = plan.even() && plan.frame_step <= plan.seconds;

@@ -42,7 +42,8 @@ struct RunPlan {
 };
 
 /// Returns the plan of a new run of a scene. `seconds` and `frames_per_second` override the values of the scene. Throws
-/// SceneError if there are more than 1e9 frames, or more than 1e9 samples per frame. `file`: scene file, for messages.
+/// SceneError if there are more than 1e9 frames, more than 1e9 samples per frame, or more than 1e9 steps of
+/// Settings::step_size between two of them. `file`: scene file, for messages.
 RunPlan plan_run(const Scene& scene, const std::filesystem::path& file, std::optional<Real> seconds,
                  std::optional<Real> frames_per_second = {});
 

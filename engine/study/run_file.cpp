@@ -1,11 +1,6 @@
 #include "engine/study/run_file.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -126,21 +121,10 @@ Json run_json(const StudyRun& run) {
                       {"loaded_areas", areas}});
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder) {
-    if (folder.empty()) return;
-    make_folder(folder);
-    file_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    // On a file system without locks, flock() fails with an error other than EWOULDBLOCK. The folder is then used
-    // without a lock.
-    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        close(file_);
-        refuse_in(folder.string(), "study", "folder", "a folder in which another study runs",
-                  "a folder of one study at a time", "wait for the other study, or choose another folder");
-    }
-}
-
-FolderLock::~FolderLock() {
-    if (file_ >= 0) close(file_);
+OutputLock reserve_folder(const std::filesystem::path& folder, const std::filesystem::path& scene) {
+    return {folder.empty() ? folder : folder / "study.lock",
+            {folder.string(), "study", "folder", {}, {}, {}},
+            "study of " + std::filesystem::absolute(scene).string()};
 }
 
 void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/separate_outputs.h"
 #include "engine/scene/place.h"
 #include "skerry/study.h"
 
@@ -13,18 +14,8 @@ namespace skerry {
 /// Short name of a variant, for messages and files: scene, refine_1, step_0.5, tolerance_0.01, element_linear, draw_1.
 std::string variant_name(const StudyVariant& variant);
 
-/// Reserves a folder for one study, until the object is destroyed. The folder is created if it is missing.
-class FolderLock {
-public:
-    /// An empty path reserves nothing. Throws SceneError if another study, in any process, has reserved the folder.
-    explicit FolderLock(const std::filesystem::path& folder);
-    ~FolderLock();
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-
-private:
-    int file_ = -1;
-};
+/// Reserves a folder for one study. An empty path reserves nothing. Throws SceneError if another study has the folder.
+OutputLock reserve_folder(const std::filesystem::path& folder, const std::filesystem::path& scene);
 
 /// Writes the result of a run, completely or not at all. `inputs`: text that identifies all inputs of the run. Throws
 /// SceneError.

@@ -73,7 +73,7 @@ public:
           hasher_(path),
           scene_(read_studied_scene(path, settings)),
           plan_(plan_study(scene_)),
-          lock_(settings.folder) {
+          lock_(reserve_folder(settings.folder, path)) {
         runs_.resize(plan_.size());
         inputs_.resize(plan_.size());
         progress_ = std::vector<std::atomic<double>>(plan_.size());
@@ -329,7 +329,7 @@ private:
     CaseHasher hasher_;  // constructed before `scene_`, so that it detects changes of files since the scene was read
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
-    const FolderLock lock_;  // constructed after `scene_`, so that an invalid scene creates no folder
+    const OutputLock lock_;  // constructed after `scene_`, so that an invalid scene creates no folder
     Real mean_step_ = 0;     // mean step of the unchanged scene [s]
     // The following three vectors are indexed like `plan_`.
     std::vector<StudyRun> runs_;

@@ -59,6 +59,10 @@ Real CavityInputs::volume(std::size_t c) const {
     return sum;
 }
 
+CavityFilling CavityInputs::filling(std::size_t c, Real t, Real volume_then) const {
+    return {law[c], fluid[c], law[c] == CavityLaw::gas ? mass[c] : value_at(keys_of(c), t), volume_then};
+}
+
 Real filling_stiffness(CavityLaw law, const CavityFluid& fluid, Real pressure, Real volume) {
     if (law == CavityLaw::pressure) return 0;
     return (law == CavityLaw::gas ? fluid.exponent * (pressure + fluid.ambient) : fluid.bulk_modulus) / volume;
@@ -93,7 +97,8 @@ Real CavityFilling::energy() const {
     }
     // Volume above which the liquid boils [m^3].
     const Real most = amount * std::exp(fluid.ambient / fluid.bulk_modulus), v = std::min(volume, most);
-    return fluid.bulk_modulus * (amount - v - v * std::log(amount / v)) + fluid.ambient * (volume - v);
+    const Real excess = amount / v - 1;  // tiny for a stiff liquid, so log1p() avoids cancellation
+    return fluid.bulk_modulus * v * (excess - std::log1p(excess)) + fluid.ambient * (volume - v);
 }
 
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
@@ -114,11 +119,8 @@ bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real no
             },
             [](Real a, Real b) { return a + b; });
         out.volume_now[c] = cavities.closed[c] ? sum : cavities.open_volume[c] + sum;
-        const CavityLaw law = cavities.law[c];
-        const Real amount = law == CavityLaw::pressure ? mean_value(cavities.keys_of(c), now - lag, kick)
-                            : law == CavityLaw::gas    ? cavities.mass[c]
-                                                       : value_at(cavities.keys_of(c), now);
-        const CavityFilling filling{law, cavities.fluid[c], amount, out.volume_now[c]};
+        CavityFilling filling = cavities.filling(c, now, out.volume_now[c]);
+        if (filling.law == CavityLaw::pressure) filling.amount = mean_value(cavities.keys_of(c), now - lag, kick);
         const Real third = -filling.pressure() / 3;
         const Index first = cavities.body_nodes[static_cast<std::size_t>(cavities.body[c])].begin;
         for (auto f = begin; f < static_cast<std::size_t>(cavities.faces[c].end); ++f)
@@ -137,6 +139,30 @@ struct PipeEnd {
     std::size_t cavity;  // row of CavityTable
     bool is_cavity;
 };
+
+/// Power of a pressure of 1 Pa on the faces of a cavity [W/Pa]. area(f): area vector of face f [m^2]. velocity(n):
+/// velocity of node n [m/s].
+Real power_per_pressure(const CavityInputs& cavities, std::size_t c, auto&& area, auto&& velocity) {
+    const Index first = cavities.body_nodes[static_cast<std::size_t>(cavities.body[c])].begin;
+    Real sum = 0;
+    for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
+         f < static_cast<std::size_t>(cavities.faces[c].end); ++f) {
+        Vec3 of_corners = Vec3::Zero();
+        for (const Index n : cavities.face[f]) of_corners += velocity(static_cast<std::size_t>(first + n));
+        sum -= area(f).dot(of_corners) / 3;
+    }
+    return sum;
+}
+
+/// Velocity of a node now, or 0 if the node is held.
+auto free_velocity(const CavityWorkInputs& step) {
+    return [&step](std::size_t n) -> Vec3 { return step.free.contain(n) ? step.velocity[n] : Vec3(Vec3::Zero()); };
+}
+
+/// True if this rank counts the energy of the cavity.
+bool has_energy(const CavityInputs& cavities, const CavityWorkInputs& step, std::size_t c) {
+    return cavities.law[c] != CavityLaw::pressure && !step.ghosts.contain(cavities.body[c]);
+}
 
 std::size_t row_of_slot(const HandleMap<CavityHandle>& map, std::uint32_t slot) {
     return static_cast<std::size_t>(map.row(map.handle_of_slot(slot)));
@@ -157,15 +183,36 @@ Real flow_between(const PipeEnd& first, const PipeEnd& second, Real conductance,
 
 }  // namespace
 
-bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
-                    std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out) {
+Real store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
+                    const CavityWorkInputs& step, Real t, Real h, const CavityMemory& out) {
+    const std::span<const Real> volume_now = step.volume_now;
+    Real added = 0;  // energy added to the fillings [J]
+    const auto change = [&](std::size_t c, CavityFilling filling, Real amount) {
+        if (amount == filling.amount || !has_energy(cavities, step, c)) return;
+        // Mean of the values for the volumes before and after the step.
+        for (const Real volume : {volume_now[c], cavities.volume(c)}) {
+            filling.volume = volume;
+            CavityFilling changed = filling;
+            changed.amount = amount;
+            added += (changed.energy() - filling.energy()) / 2;
+        }
+    };
+    const auto set_mass = [&](std::size_t c, Real mass) {
+        change(c, cavities.filling(c, t, volume_now[c]), mass);
+        out.mass[c] = mass;
+    };
     for (std::size_t c = 0; c < cavities.size(); ++c) {
         const CavityLaw law = cavities.law[c];
-        const Real amount = law == CavityLaw::gas ? out.mass[c] : value_at(cavities.keys_of(c), t);
-        out.pressure_now[c] = CavityFilling{law, cavities.fluid[c], amount, volume_now[c]}.pressure();
+        const CavityFilling filling = cavities.filling(c, t, volume_now[c]);
+        out.pressure_now[c] = filling.pressure();
+        if (law == CavityLaw::pressure) continue;
+        out.power[c] =
+            out.pressure_now[c] * power_per_pressure(
+                                      cavities, c, [&](std::size_t f) { return step.area[f]; }, free_velocity(step));
         if (law == CavityLaw::gas)
-            out.mass[c] = std::max(out.mass[c] + h * mean_value(cavities.keys_of(c), t, h), Real(0));
-        if (cavities.closed[c] || law == CavityLaw::pressure) continue;
+            set_mass(c, std::max(out.mass[c] + h * mean_value(cavities.keys_of(c), t, h), Real(0)));
+        if (law == CavityLaw::liquid) change(c, filling, value_at(cavities.keys_of(c), t + h));
+        if (cavities.closed[c]) continue;
         out.volume[c] = cavities.volume(c);
         for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
              f < static_cast<std::size_t>(cavities.faces[c].end); ++f)
@@ -179,10 +226,39 @@ bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const
                                             : end_at(cavities, b, out.mass, volume_now[b]);
         const Real moved = flow_between(first, second, pipes.conductance[p], h);
         out.flow[p] = moved / h;
-        out.mass[a] -= moved;
-        if (!to_reservoir) out.mass[b] += moved;
+        set_mass(a, out.mass[a] - moved);
+        if (!to_reservoir) set_mass(b, out.mass[b] + moved);
     }
-    return cavities.size() > 0;
+    return added;
+}
+
+Real measure_cavities(const CavityInputs& cavities, const CavityWorkInputs& step, Real t, Real h, Real lag) {
+    const auto area = [&](std::size_t f) { return step.area[f]; };
+    const auto during = [&](std::size_t n) -> Vec3 {
+        const Vec3& next = step.velocity_next[n];
+        return lag == 0 && step.free.contain(n) ? Vec3((step.velocity[n] + next) / 2) : next;
+    };
+    Real work = 0;
+    for (std::size_t c = 0; c < cavities.size(); ++c) {
+        if (!has_energy(cavities, step, c)) continue;
+        const Real p = cavities.filling(c, t, step.volume_now[c]).pressure();
+        work += h * p * power_per_pressure(cavities, c, area, during);
+        if (lag != 0) work += lag * (p * power_per_pressure(cavities, c, area, free_velocity(step)) - step.power[c]);
+    }
+    return work;
+}
+
+Real cavity_energy(const CavityInputs& cavities, const CavityWorkInputs& last, Real t, Real lag) {
+    Real sum = 0;
+    for (std::size_t c = 0; c < cavities.size(); ++c) {
+        if (!has_energy(cavities, last, c)) continue;
+        const CavityFilling filling = cavities.filling(c, t, cavities.volume(c));
+        sum += filling.energy();
+        if (lag == 0) continue;
+        const auto area = [&](std::size_t f) { return area_of(cavities.corners_now(c, f)); };
+        sum += lag * (filling.pressure() * power_per_pressure(cavities, c, area, free_velocity(last)) - last.power[c]);
+    }
+    return sum;
 }
 
 bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,

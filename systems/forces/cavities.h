@@ -9,13 +9,33 @@
 #include "components/body_table.h"
 #include "components/cavity_table.h"
 #include "components/column.h"
+#include "components/free_nodes.h"
+#include "components/ghost_marks.h"
 #include "components/handle.h"
 #include "components/node_table.h"
+#include "components/rigid_body_table.h"
 #include "components/types.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
 
 namespace skerry {
+
+/// State of the filling of a cavity.
+struct CavityFilling {
+    CavityLaw law;
+    CavityFluid fluid;
+    // Mass of the gas [kg], volume of the liquid at ambient pressure [m^3] or prescribed pressure [Pa].
+    Real amount;
+    Real volume;  // [m^3]
+
+    /// Pressure above ambient pressure [Pa]; NaN if the volume of a gas or a liquid is not positive.
+    Real pressure() const;
+    /// Derivative of the pressure by the mass, for a gas only [Pa/kg].
+    Real pressure_per_mass() const;
+    /// Work that the filling and the ambient pressure would do on the faces until the pressures inside and outside are
+    /// equal [J]; 0 for a prescribed pressure.
+    Real energy() const;
+};
 
 struct CavityInputs {
     std::span<const CavityLaw> law;
@@ -59,29 +79,14 @@ struct CavityInputs {
     Real volume_part(std::size_t c, std::size_t f) const;
     /// Present volume of cavity `c` [m^3].
     Real volume(std::size_t c) const;
+    /// Filling of cavity `c` at time `t` [s], if the cavity has this volume [m^3].
+    CavityFilling filling(std::size_t c, Real t, Real volume) const;
 };
 
 /// Area vector of a triangle, which is its area times its normal [m^2]. `corners`: positions as columns [m].
 Vec3 area_of(const Mat3& corners);
 /// Length of the longest edge of a triangle [m].
 Real longest_edge(const Mat3& corners);
-
-/// State of the filling of a cavity.
-struct CavityFilling {
-    CavityLaw law;
-    CavityFluid fluid;
-    // Mass of the gas [kg], volume of the liquid at ambient pressure [m^3] or prescribed pressure [Pa].
-    Real amount;
-    Real volume;  // [m^3]
-
-    /// Pressure above ambient pressure [Pa]; NaN if the volume of a gas or a liquid is not positive.
-    Real pressure() const;
-    /// Derivative of the pressure by the mass, for a gas only [Pa/kg].
-    Real pressure_per_mass() const;
-    /// Work that the filling and the ambient pressure would do on the faces until the pressures inside and outside are
-    /// equal [J]; 0 for a prescribed pressure.
-    Real energy() const;
-};
 
 /// Stiffness -dp/dV of a filling [Pa/m^3]; 0 for a prescribed pressure. For a boiling liquid, whose pressure is
 /// constant, the result is only an upper bound: the stiffness before boiling. `pressure`: above ambient [Pa].
@@ -110,6 +115,28 @@ struct CavityOutputs {
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
                        const CavityOutputs& out);
 
+struct CavityWorkInputs {
+    std::span<const Vec3> area;                     // CavityTable [m^2]
+    std::span<const Real> volume_now, power;        // CavityTable [m^3], [W]
+    std::span<const Vec3> velocity, velocity_next;  // NodeTable [m/s]
+    FreeNodes free;
+    GhostMarks ghosts;  // cavities of ghosts have no energy on this rank
+
+    static CavityWorkInputs bind(const Binder& binder, const CavityTable& cavity, const NodeTable& node,
+                                 const BodyTable& body, const RigidBodyTable& rigid) {
+        return {.area = binder.read(cavity.area),
+                .volume_now = binder.read(cavity.volume_now),
+                .power = binder.read(cavity.power),
+                .velocity = binder.read(node.velocity),
+                .velocity_next = binder.read(node.velocity_next),
+                .free = {.inverse_mass = binder.read(node.inverse_mass),
+                         .node_body = binder.read(node.body),
+                         .body_rigid = binder.read(body.rigid),
+                         .holder = binder.read(rigid.holder)},
+                .ghosts = {binder.read(body.ghost)}};
+    }
+};
+
 struct PipeInputs {
     std::span<const Index> first_body, second_body;
     std::span<const std::uint32_t> first, second;
@@ -132,7 +159,7 @@ struct PipeInputs {
 };
 
 struct CavityMemory {
-    std::span<Real> mass, volume, pressure_now;
+    std::span<Real> mass, volume, pressure_now, power;
     std::span<Mat3> corners;
     std::span<Real> flow;  // PipeTable
 
@@ -140,17 +167,26 @@ struct CavityMemory {
         return {.mass = binder.write(cavity.mass),
                 .volume = binder.write(cavity.volume),
                 .pressure_now = binder.write(cavity.pressure_now),
+                .power = binder.write(cavity.power),
                 .corners = binder.write(cavity.corners),
                 .flow = binder.write(pipe.flow)};
     }
 };
 
-/// Updates the cavities after a step of length `h` that began at time `t` [s]. Stores the pressures at time `t`, which
-/// follow from the volumes `volume_now` (column of CavityTable) [m^3]. Adds the prescribed flow of gas to the masses in
-/// cavities, and lets gas flow through the pipes in table order. Updates the volumes of open cavities. A prescribed
-/// outflow ends when a cavity contains no more gas. Returns false if there is no cavity.
-bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
-                    std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out);
+/// After a step of length `h` that began at time `t`: stores the pressures at time `t`, adds the prescribed flow of gas
+/// to the masses in cavities, lets gas flow through the pipes in table order, and updates the volumes of open cavities.
+/// A prescribed outflow ends when a cavity contains no more gas. Returns the energy that changes of the amounts of gas
+/// and liquid have added to the fillings [J].
+Real store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
+                    const CavityWorkInputs& step, Real t, Real h, const CavityMemory& out);
+
+/// Work of gases and liquids on the nodes in a step that begins at time `t` [J]. Formulas, `h` and `lag`: see
+/// measure_work.h.
+Real measure_cavities(const CavityInputs& cavities, const CavityWorkInputs& step, Real t, Real h, Real lag);
+
+/// Energy of all gases and liquids at the present positions and time `t` [J], plus a correction for velocities that are
+/// `lag` seconds older than positions, as in spring_energy.
+Real cavity_energy(const CavityInputs& cavities, const CavityWorkInputs& last, Real t, Real lag);
 
 /// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or whose mass of gas changes: these
 /// bodies must not sleep. In a pipe, gas counts as flowing if the absolute pressures at both ends differ by more than

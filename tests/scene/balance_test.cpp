@@ -1,7 +1,12 @@
 // Error estimates of a run: balances of energy and momentum, and inverted elements.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "engine/world/tuning.h"
+#include "skerry/cavity.h"
+#include "tests/support/filled_sphere.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::balance_test {
@@ -177,6 +182,90 @@ TEST_CASE("a report names the body and the element that turned inside out", "[sc
     CHECK(report.worst_volume_body == "two tetrahedra");
     CHECK(report.worst_volume_element == 1);
     CHECK(report.worst_volume_ratio < 0);
+}
+
+using namespace filled_sphere;
+
+TEST_CASE("a body that breathes on its gas keeps its energy", "[scene][cavities][balance][long]") {
+    const Real stable = HollowSphere(pressurised, rubber()).world.stable_step();
+    for (const Real share : {1.0, 0.25}) {
+        CAPTURE(share);
+        const Real tolerance = 0.05 * share * share;  // the error of leapfrog grows with the square of the step
+        Settings settings = accurate(no_gravity);
+        settings.integrator = Integrator::leapfrog;
+        settings.step_size = share * stable;
+        HollowSphere sphere(pressurised, rubber(), BodyDynamics::explicit_elastic, settings);
+        const auto energy = [&] {
+            const Energy& e = sphere.world.report().energy;
+            return e.kinetic + e.elastic;
+        };
+        REQUIRE(sphere.world.advance(0.01).ok());
+        const Real start = energy();
+        for (int call = 0; call < 10; ++call) {
+            REQUIRE(sphere.world.advance(share).ok());
+            CHECK(energy() == Approx(start).epsilon(tolerance));
+            CHECK(sphere.world.report().energy.elastic > 0);
+        }
+        CHECK(sphere.world.report().energy_error_share < tolerance);
+    }
+}
+
+TEST_CASE("a piston exchanges its energy with a gas or a liquid without loss", "[scene][cavities][balance]") {
+    constexpr Real side = 0.1, area = side * side, volume = 2e-3, mass = 1, speed = 1e-3;
+    const auto [filling, stiffness] = GENERATE(
+        std::pair<decltype(CavitySettings::filling), Real>(GasFilling{.exponent = 1.4}, 1.4 * standard_pressure),
+        std::pair<decltype(CavitySettings::filling), Real>(GasFilling{.exponent = 1}, standard_pressure),
+        std::pair<decltype(CavitySettings::filling), Real>(LiquidFilling{.bulk_modulus = 2e9}, 2e9));
+    const Real period = 2 * std::numbers::pi / std::sqrt(stiffness * area * area / (mass * volume));
+    Settings settings = accurate(no_gravity);
+    settings.integrator = GENERATE(Integrator::leapfrog, Integrator::symplectic_euler);
+    settings.step_size = period / 400;
+    World world(settings);
+    const BodyHandle piston = world.add_body(
+        mesh::box({side, side, side}, {1, 1, 1}),
+        {.material = world.add_material({}), .velocity = {speed, 0, 0}, .dynamics = BodyDynamics::rigid});
+    Cavities(world).add({.body = piston,
+                         .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > side / 2 - 1e-9; }),
+                         .filling = filling,
+                         .volume = volume});
+    const Real start = world.report().energy.kinetic;
+    for (int quarter = 1; quarter <= 8; ++quarter) {
+        REQUIRE(world.advance(period / 4).ok());
+        const Energy energy = world.report().energy;
+        // at the quarters one of the two energies is at its maximum
+        CHECK((quarter % 2 == 1 ? energy.elastic : energy.kinetic) == Approx(start).epsilon(1e-3));
+        CHECK((quarter % 2 == 1 ? energy.kinetic : energy.elastic) < 1e-3 * start);
+    }
+    CHECK(world.report().energy_error_share < 1e-4);
+}
+
+TEST_CASE("the balance of energy holds for a ball of gas that bounces, and counts added gas and liquid as work",
+          "[scene][cavities][balance]") {
+    const BodyDynamics dynamics =
+        GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid);
+    CAPTURE(dynamics);
+    const auto energy_error = [&](const decltype(CavitySettings::filling)& filling, auto&& change) {
+        // a quarter of the stable step, because the error of the balance grows with the square of the step
+        Settings settings = accurate(no_gravity);
+        settings.step_size = HollowSphere(filling, rubber()).world.stable_step() / 4;
+        HollowSphere sphere(filling, rubber(), dynamics, settings);
+        sphere.world.add_collider(Plane{.point = {0, 0, -0.101}});
+        sphere.world.set_velocity(sphere.body, {0.1, 0, -1});
+        change(sphere, Cavities(sphere.world));
+        REQUIRE(sphere.world.advance(0.05).ok());
+        return sphere.world.report().energy_error_share;
+    };
+    CHECK(energy_error(pressurised, [](HollowSphere&, Cavities) {}) < 1e-3);
+    CHECK(energy_error(pressurised, [](HollowSphere& sphere, Cavities cavities) {
+              cavities.add({.first = sphere.cavity, .conductance = 1e-7});
+          }) < 1e-3);
+    CHECK(energy_error(pressurised, [](HollowSphere& sphere, Cavities cavities) {
+              cavities.set_inflow(sphere.cavity, {{{0, 0}, {0.05, 2e-3}}});
+          }) < 1e-3);
+    CHECK(energy_error(LiquidFilling{.bulk_modulus = 1e6}, [](HollowSphere& sphere, Cavities cavities) {
+              const Real volume = sphere.state().volume;
+              cavities.set_liquid_volume(sphere.cavity, {{{0, volume}, {0.05, 1.02 * volume}}});
+          }) < 1e-3);
 }
 
 }  // namespace skerry::test::balance_test

@@ -111,7 +111,7 @@ struct StageReport {
 /// Energies of a world.
 struct Energy {
     Real kinetic = 0;     // energy of the motion of all bodies [J]
-    Real elastic = 0;     // energy stored by deformation of bodies, fibres and springs [J]
+    Real elastic = 0;     // energy stored by bodies, fibres, springs, and gas and liquid in cavities [J]
     Real potential = 0;   // energy of the weight, relative to the origin [J]
     Real dissipated = 0;  // energy lost since the start; see RunCounters::dissipated [J]
 };

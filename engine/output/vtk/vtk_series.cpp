@@ -53,15 +53,9 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
     if (name_.empty() || name_.find_first_of("/\\") != std::string::npos)
         refuse_in(folder_.string(), "output", "name", "\"" + name_ + "\"", "a file name without / and \\");
     make_folder(folder_);
-    for (const auto& entry : std::filesystem::directory_iterator(folder_))
-        if (entry.symlink_status().type() == std::filesystem::file_type::regular &&
-            is_series_file(entry.path().filename().string(), name_))
-            earlier_.push_back(entry.path());
-    for (const std::filesystem::path& file : earlier_) require_replaceable(file);
-    // The index file is removed first. Otherwise, if the removal of another file failed, an index that lists missing
-    // files would be left.
-    std::stable_partition(earlier_.begin(), earlier_.end(),
-                          [](const auto& file) { return file.extension() == ".pvd"; });
+    // The name of the index sorts first, so the index is removed first. If the removal of another file then fails, no
+    // index is left that names missing files.
+    earlier_ = EarlierFiles(folder_, [&](const std::string& file) { return is_series_file(file, name_); });
 }
 
 std::string VtkSeries::frame_file(const char* part, const char* extension) const {
@@ -85,18 +79,6 @@ void VtkSeries::number(const Frame& frame) {
     for (const LineFrame& line : frame.lines)
         if (line_number_.try_emplace(line.key(), static_cast<Index>(line_number_.size())).second)
             line_names_.push_back(line.name);
-}
-
-void VtkSeries::remove_earlier() {
-    for (const std::filesystem::path& file : earlier_) {
-        std::error_code error;
-        std::filesystem::remove(file, error);
-        if (error)
-            refuse_in(file.string(), "output", {},
-                      "the error \"" + error.message() + "\" while removing this file of an earlier run",
-                      "a file that can be replaced", "check the permissions of the folder, or choose another folder");
-    }
-    earlier_.clear();
 }
 
 /// Reads the node positions of the first frame, from which displacements are measured. Does nothing if the file of this
@@ -128,7 +110,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
     const auto list = [&](int part, const std::string& file) {
         std::error_code ignored;
         const bool there = std::filesystem::exists(folder_ / file, ignored);
-        std::erase(earlier_, folder_ / file);  // files of the run that is continued must not be removed
+        earlier_.keep(folder_ / file);  // files of the run that is continued must not be removed
         if (there) entries_.push_back({static_cast<Real>(frame_count_) * frame_step, part, file});
         return there;
     };
@@ -149,7 +131,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
 }
 
 void VtkSeries::write_frame(const Frame& frame) {
-    remove_earlier();
+    earlier_.remove();
     try {
         write_files(frame);
     } catch (...) {

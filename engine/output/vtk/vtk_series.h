@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/separate_outputs.h"
 #include "engine/output/frame.h"
 #include "engine/output/shape_picture.h"
 
@@ -41,7 +42,6 @@ private:
         std::string file;  // file name without folder; the index is in the same folder
     };
 
-    void remove_earlier();
     void write_files(const Frame& frame);
     void number(const Frame& frame);
     void read_origins(const Frame& now);
@@ -52,10 +52,9 @@ private:
     bool colliders_changed(const Frame& frame);
     std::string frame_file(const char* part, const char* extension) const;
 
-    // Files of an earlier series with the same name, the index file first.
-    std::vector<std::filesystem::path> earlier_;
     std::filesystem::path folder_;
     std::string name_;
+    EarlierFiles earlier_;  // files of an earlier series with the same name
     std::size_t frame_count_ = 0;
     std::map<BodyHandle, Index> body_number_;
     std::map<ColliderHandle, Index> collider_number_;

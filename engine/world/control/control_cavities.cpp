@@ -149,10 +149,7 @@ Real volume_of_cavity(const Model& model, std::size_t row) {
 }
 
 CavityFilling filling_of(const Model& model, std::size_t row, Real time) {
-    const CavityTable& table = model.cavities;
-    const bool gas = table.law[row] == CavityLaw::gas;
-    return {table.law[row], table.fluid[row], gas ? table.mass[row] : value_at(table.keys_of(row), time),
-            volume_of_cavity(model, row)};
+    return cavities_of(model).filling(row, time, volume_of_cavity(model, row));
 }
 
 void erase_cavity(Model& model, std::size_t row) {
@@ -214,7 +211,7 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
     table.closed[row] = closed;
     table.fluid[row] = fluid;
     table.volume[row] = cavity.volume.value_or(0);
-    table.mass[row] = table.pressure_now[row] = table.volume_now[row] = 0;
+    table.mass[row] = table.pressure_now[row] = table.power[row] = table.volume_now[row] = 0;
     table.keys[row] = {};
     const auto begin = static_cast<Index>(table.face.size());
     for (const Face& face : faces) {

@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-inline constexpr int world_file_version = 29;
+inline constexpr int world_file_version = 30;
 
 /// Texts in the header of a saved world.
 struct SavedTexts {

@@ -82,7 +82,9 @@ struct StepFindings {
     JointMeasures joints;
     TieMeasures ties;
     SpringWork springs;
-    Real fibre_work = 0;  // work of the passive stress of fibres on the nodes [J]
+    Real fibre_work = 0;     // work of the passive stress of fibres on the nodes [J]
+    Real cavity_work = 0;    // work of gases and liquids in cavities on the nodes [J]
+    Real cavity_supply = 0;  // energy that gases and liquids have gained because their amounts have changed [J]
     CableMeasures cables;
     Index released_ties = 0;  // number of ties whose last node has broken off in this step
     // number of bodies whose elements this step skips, because the bodies are undeformed (find_unstrained)

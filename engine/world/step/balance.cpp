@@ -166,7 +166,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     work += step.findings.joints.work + step.findings.ties.work + step.findings.cables.work + contacts.outer_work -
             contacts.dissipated - step.findings.damped - step.findings.strained.damped - step.findings.relaxed -
             step.findings.viscous - step.findings.plastic - step.findings.rest.energy - step.findings.springs.work -
-            step.findings.fibre_work - step.findings.springs.dissipated;
+            step.findings.fibre_work - step.findings.cavity_work + step.findings.cavity_supply -
+            step.findings.springs.dissipated;
     ++balance.steps;
     balance.impulse += impulse;
     balance.work += work;

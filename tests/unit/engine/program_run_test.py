@@ -341,6 +341,25 @@ class ProgramRunTest(ProgramCase):
                             message=["drop_bodies_0003", "protected"])
         kept.chmod(0o644)
 
+    def test_an_output_that_another_process_writes_is_refused_with_the_name_of_both(self):
+        out, probes = self.folder / "out", self.folder / "probes.csv"
+        fast = self.write("fast.json", {**SCENE, "probes": [{"name": "energy", "quantity": "energy"}]})
+        slow = self.write("slow.json", {**SLOW, "probes": [{"name": "energy", "quantity": "energy"}]})
+        other = self.write("other.json", {**SCENE, "name": "other"})
+        with self.job("run", slow, "--out", out, "--probes", probes, "--checkpoint", self.folder / "c") as process:
+            for option, path in (("--out", out), ("--probes", probes), ("--checkpoint", self.folder / "c")):
+                before = {file: file.read_bytes() for file in self.folder.rglob("*") if file.is_file()}
+                self.assert_refused("run", fast, option, path,
+                                    message=[f"{path}: {option}: found an output of process {process.pid} on ",
+                                             f"(skerry run {slow}), expected"])
+                self.assertEqual({file: file.read_bytes() for file in before}, before)
+            self.skerry("run", other, "--out", out, "--quiet")  # a scene with another name has other files
+            process.kill()
+            process.communicate(timeout=60)
+        self.assertTrue((out / "drop.lock").exists())
+        self.skerry("run", fast, "--out", out, "--quiet")  # a killed process reserves nothing
+        self.assertEqual(sorted(file.name for file in self.folder.rglob("*.lock")), ["c.lock", "probes.csv.lock"])
+
     def test_no_output_goes_among_the_frames_under_their_names(self):
         out = self.folder / "out"
         for name in ("drop.pvd", "drop_bodies_0000.vtu", "drop_colliders_0007.vtp"):
@@ -441,6 +460,9 @@ class SetTest(ProgramCase):
         self.assertEqual(json.loads(stats.read_text())["stable_dt_body"], "brick")
         self.assert_refused("run", self.scene, "--set", "bodies[7].name=brick",
                             message=["index 7 in a list of length ", "drop.json"])
+        for step in ("--step", "1e-300"), ("--set", "settings.step_size=1e-300"):
+            self.assert_refused("run", self.scene, *step,
+                                message=["drop.json: run: steps of settings.step_size per frame", "found 5e+297"])
         self.assert_refused("run", self.scene, "--set", "settings.gravitee=1", message=["gravitee", "gravity"])
 
 

@@ -330,6 +330,28 @@ class ProgramTest(ProgramCase):
         for name in steps:  # the same run gives the same bytes
             self.assertEqual((self.folder / "again" / name).read_bytes(), (self.folder / "steps" / name).read_bytes())
 
+    def test_problems_of_an_earlier_run_make_room_and_nothing_else_does(self):
+        earlier = self.exported("problems", "--export-every", 5)
+        mine = ["drop-step000005-contacts4.txt", "drop-step5.hdf5", "drop-step000005-contacts.hdf5", "notes.hdf5",
+                "drop2-step000005-contacts4.hdf5"]
+        for name in mine:
+            (self.folder / "problems" / name).write_text("mine")
+        found = self.exported("problems", "--export-every", 7)
+        self.assertTrue(set(earlier) - set(found))
+        self.assertEqual(found, sorted(self.exported("others", "--export-every", 7) + mine))
+
+    def test_a_resumed_run_keeps_the_problems_before_its_checkpoint_only(self):
+        flags = ("--export-every", 5, "--checkpoint", self.folder / "drop.skerry")
+        self.exported("problems", *flags, "--seconds", 0.1)
+        checkpoint = (self.folder / "drop.skerry").read_bytes()
+        earlier = self.exported("problems", *flags)
+        (self.folder / "drop.skerry").write_bytes(checkpoint)
+        self.skerry("run", "--restart", self.folder / "drop.skerry", "--quiet", "--seconds", 0.15, "--export-every", 5,
+                    "--export-problems", self.folder / "problems")
+        found = sorted(path.name for path in (self.folder / "problems").iterdir())
+        self.assertEqual(found, earlier[:len(found)])
+        self.assertLess(len(found), len(earlier))
+
     def test_exporting_changes_nothing(self):
         hashes = []
         for flags in ([], ["--export-problems", self.folder / "problems", "--export-every", 7]):

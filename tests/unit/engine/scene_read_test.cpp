@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "engine/base/complaint.h"
 #include "engine/scene/parse_json.h"
 #include "engine/scene/scene_file.h"
 #include "skerry/scene.h"
@@ -427,6 +428,31 @@ TEST_CASE("an error carries the parts of its message", "[unit]") {
     const SceneError plain("a text");
     CHECK(plain.complaint().text().empty());
     CHECK(std::string(plain.what()) == "a text");
+}
+
+TEST_CASE("an error at a place in a scene names no object and no field twice", "[unit]") {
+    const auto message = [](const std::string& object, const std::string& path, const std::string& inner,
+                            const std::string& field) {
+        const SceneError error(Complaint{{}, inner, field, "x", {}, {}});
+        return std::string(error_at({"f", object, path, {}, {}, {}}, error).what());
+    };
+    CHECK(message({}, "settings", "settings", "theta") == "f: settings: theta: found x");
+    CHECK(message({}, "materials.m", "material", "density") == "f: materials.m: density: found x");
+    CHECK(message("joint \"j\"", "joints[1].mimic", "joint", "mimic") == "f: joint \"j\": joints[1].mimic: found x");
+    CHECK(message("body \"b\"", "bodies[2]", "body 'b'", "mass") == "f: body \"b\": bodies[2]: mass: found x");
+    CHECK(message("body \"b\"", "bodies[2].pin[0]", "attachment of body 'b'", "nodes") ==
+          "f: body \"b\": bodies[2].pin[0]: nodes: found x");
+    CHECK(message("cavity \"c\"", "cavities[0]", "cavity of body 'b'", "faces") ==
+          "f: cavity \"c\": cavities[0]: faces: found x");
+    // other objects
+    CHECK(message("body \"b\"", "bodies[2]", "body 'bat'", "mass") ==
+          "f: body \"b\": bodies[2]: body 'bat': mass: found x");
+    CHECK(message({}, "bodies[2].mesh", "node 4", {}) == "f: bodies[2].mesh: node 4: found x");
+    CHECK(message({}, "bodies[2].remesh", "mesh", {}) == "f: bodies[2].remesh: mesh: found x");
+    CHECK(message({}, "meshing", "mesh", {}) == "f: meshing: mesh: found x");
+    CHECK(message({}, {}, "mesh", "nodes") == "f: mesh: nodes: found x");
+    CHECK_THROWS_WITH(load_scene_text(scene_with(R"("settings": {"tolerance": 2})"), {}),
+                      Catch::StartsWith("scene: settings: tolerance: found 2"));
 }
 
 TEST_CASE("the published schema is the one that this reader has", "[unit][contract]") {

@@ -1,4 +1,6 @@
 // Studies: their runs, the budget, stopping and continuing, and the cheapest settings.
+#include <unistd.h>
+
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -268,8 +270,9 @@ TEST_CASE("a folder has one study at a time") {
     StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
     settings.seconds = 0.02;
     {
-        const FolderLock other(settings.folder);
-        CHECK(message_of(scene, settings).find("runs: study: folder: found a folder in which another study runs") !=
+        const OutputLock other = reserve_folder(settings.folder, "other.json");
+        CHECK(message_of(scene, settings)
+                  .find("runs: study: folder: found an output of process " + std::to_string(getpid())) !=
               std::string::npos);
     }
     CHECK(message_of(scene, settings).empty());

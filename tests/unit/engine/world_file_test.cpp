@@ -144,16 +144,16 @@ TEST_CASE("a saved world with any bytes in its header is refused, or is the same
 TEST_CASE("a file of another kind or version is refused, and the error names it", "[unit]") {
     const FileOfWorld saved(full_world());
     CHECK_THAT(saved.refusal(""), Contains("found a file of another kind, expected a world that Skerry saved"));
-    CHECK_THAT(saved.refusal("{\"bodies\": []}"), Contains("expected a world that Skerry saved, version 29"));
+    CHECK_THAT(saved.refusal("{\"bodies\": []}"), Contains("expected a world that Skerry saved, version 30"));
     CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(start_bytes)), Contains("a file of another kind"));
     Bytes other = saved.bytes;
     const auto begin = reinterpret_cast<const char*>(other.data());
-    const std::string name = "version 29";
+    const std::string name = "version 30";
     const auto place = std::search(begin, begin + other.size(), name.begin(), name.end()) - begin;
     other[static_cast<std::size_t>(place) + 8] = std::byte{'1'};
-    CHECK_THAT(saved.refusal(other), Contains("found version 19, expected version 29"));
+    CHECK_THAT(saved.refusal(other), Contains("found version 10, expected version 30"));
     CHECK_THAT(saved.refusal("Skerry world, version 24\nAn HDF5 file of 8000 bytes begins at byte 512.\n"),
-               Contains("found version 24, expected version 29"));
+               Contains("found version 24, expected version 30"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("found a folder or device"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
 }

@@ -15,12 +15,16 @@ bool any_cavity(const Model& model) {
     return model.cavities.size() > 0;
 }
 
+auto if_any_cavity(const Model& m) {
+    return only_if([](std::span<const CavityLaw> law) { return !law.empty(); }, read(m.cavities.law));
+}
+
 void list_cavity_forces(WorldState& w, TaskGraph& g) {
     CavityTable& c = w.model.cavities;
     const StepParameters& p = w.scratch.parameters;
-    const auto if_any = only_if([](std::span<const CavityLaw> law) { return !law.empty(); }, read(c.law));
     g.stage("forces/add_cavity_forces", add_cavity_forces, inputs<CavityInputs>(c, w.model.bodies, w.model.nodes),
-            value(w.clock.time), value(p.lag), value(p.kick_time), outputs<CavityOutputs>(c, w.model.nodes), if_any);
+            value(w.clock.time), value(p.lag), value(p.kick_time), outputs<CavityOutputs>(c, w.model.nodes),
+            if_any_cavity(w.model));
 }
 
 /// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]. It is the
@@ -106,10 +110,26 @@ bool a_cavity_fills(const Model& model, Real t, Real h) {
 void list_cavity_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     CavityTable& c = m.cavities;
-    const auto if_forced = only_if([](bool forced) { return forced; }, value(m.forced));
-    g.stage("forces/store_cavities", store_cavities, inputs<CavityInputs>(c, m.bodies, m.nodes),
-            inputs<PipeInputs>(m.pipes), value(m.cavity_map), read(c.volume_now), value(w.clock.time),
-            value(w.scratch.parameters.h), outputs<CavityMemory>(c, m.pipes), if_taken(w), if_forced);
+    g.stage_with_result("forces/store_cavities", w.scratch.findings.cavity_supply, store_cavities,
+                        inputs<CavityInputs>(c, m.bodies, m.nodes), inputs<PipeInputs>(m.pipes), value(m.cavity_map),
+                        inputs<CavityWorkInputs>(c, m.nodes, m.bodies, m.rigid_bodies), value(w.clock.time),
+                        value(w.scratch.parameters.h), outputs<CavityMemory>(c, m.pipes), if_taken(w),
+                        if_any_cavity(m));
+}
+
+void list_cavity_measures(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage_with_result("forces/measure_cavities", w.scratch.findings.cavity_work, measure_cavities,
+                        inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
+                        inputs<CavityWorkInputs>(m.cavities, m.nodes, m.bodies, m.rigid_bodies), value(w.clock.time),
+                        value(p.h), value(p.work_lag), if_any_cavity(m));
+}
+
+Real energy_of_cavities(const Model& model, Real t, Real lag) {
+    return cavity_energy(CavityInputs::bind({}, model.cavities, model.bodies, model.nodes),
+                         CavityWorkInputs::bind({}, model.cavities, model.nodes, model.bodies, model.rigid_bodies), t,
+                         lag);
 }
 
 }  // namespace
@@ -120,6 +140,8 @@ constinit const ForceElement cavity_pressures{.any = any_cavity,
                                               .rate_moves = true,
                                               .mark_driven = list_filled_cavities,
                                               .is_driven = a_cavity_fills,
-                                              .remember = list_cavity_memory};
+                                              .measure = list_cavity_measures,
+                                              .remember = list_cavity_memory,
+                                              .energy = energy_of_cavities};
 
 }  // namespace skerry
