@@ -155,7 +155,7 @@ const char* advice_on(SurfaceFaultKind kind) {
         case overlaps:
             return "unite the parts (a Boolean union) or move them apart";
         case doubled_volumes:
-            return "delete the inner surface, or turn it if it bounds a void";
+            return "delete the inner surface or, if it bounds a void, reverse the order of the nodes of its triangles";
         case flat_shells:
             return "delete them, or give them a thickness";
         case slivers:

@@ -88,17 +88,17 @@ public:
                 entry.place.refuse("objects whose values have the units " + slider.unit + " and " + unit,
                                    "objects that are driven in the same way");
         }
+        const std::string bounds = Json(slider.low).dump() + " to " + Json(slider.high).dump();
         for (const SliderTarget& target : slider.targets) {
             const TimeTable own = called_at(entry.place, [&] { return course_of(world_, target.control); });
             const TimeTable start = entry.value ? TimeTable(*entry.value) : own;
             for (const TimeKey& key : start.keys)
                 if (!(slider.low <= key.value && key.value <= slider.high))
                     entry.place.key(entry.value ? "value" : "low")
-                        .refuse(entry.value
-                                    ? Json(key.value).dump()
-                                    : "bounds without " + Json(key.value).dump() + ", a value that the object has",
-                                "a value from \"low\" to \"high\", " + Json(slider.low).dump() + " to " +
-                                    Json(slider.high).dump());
+                        .refuse(entry.value ? Json(key.value).dump() : "the bounds " + bounds,
+                                entry.value ? "a value from \"low\" to \"high\", " + bounds
+                                            : "bounds that include " + Json(key.value).dump() +
+                                                  ", a value that the driven object has");
             if (start != own)
                 called_at(entry.place.key("value"), [&] { start_target(world_, slider, target, *entry.value); });
         }

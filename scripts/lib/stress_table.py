@@ -12,7 +12,7 @@ This page lists extreme inputs that the engine withstands. `scripts/stress` runs
 this page, and lists all {checks} checks in `build/stress/stress.csv`. {failed} failed.
 
 In all tests the engine takes each step or refuses it with a message, the state stays finite, no scene gains more than
-a hundredth of its energy, and the report counts unsolved contact regions. The numbers below are the items of the file;
+a hundredth of its energy, and the report counts unsolved contact regions. Bold numbers are the items of that file;
 item 0 has problems reported by users of other engines.
 
 """

@@ -384,7 +384,9 @@ void Joints::set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic
         leader = model.row(mimic->leader, "set_mimic");
         for (const std::size_t joint_row : {row, static_cast<std::size_t>(leader)})
             if (!has_axis(table.kind[joint_row]))
-                refuse_joint("mimic", "a " + std::string(name_of(table.kind[joint_row])) + " joint",
+                refuse_joint("mimic",
+                             "a " + std::string(name_of(table.kind[joint_row])) + " joint as the " +
+                                 (joint_row == row ? "joint that mimics" : "leader"),
                              "a hinge or a slider");
         if (!std::isfinite(mimic->ratio) || mimic->ratio == 0)
             refuse_joint("mimic.ratio", short_text(mimic->ratio), "a finite number that is not 0");
