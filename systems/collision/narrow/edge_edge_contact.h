@@ -23,9 +23,9 @@ struct EdgeEdgeContact {
 /// Tests two edges for a contact between their interior points. An edge can only touch if the surface is convex at the
 /// edge, and if the contact normal lies between the normals of the two faces of the edge. Otherwise a point and a face
 /// are nearer. Nearly flat edges get no contact, because contacts at the surface's vertices suffice. The axis of a
-/// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both `contact_limit` and
-/// scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, edges that have passed each
-/// other get a contact, too.
+/// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both
+/// `contact_limit` and scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, edges
+/// that have passed each other get a contact, too.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real contact_limit, Surfaces surfaces);
 
