@@ -81,7 +81,7 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
         return matrix;
     };
     const auto arm_of = [&](const RigidPoints& body, const NodeWeight& entry) {
-        if (!body.weight.empty()) return body.touch[static_cast<std::size_t>(entry.contact)];
+        if (!body.touch.empty()) return body.touch[static_cast<std::size_t>(entry.contact)];
         return Vec3(body.arm[static_cast<std::size_t>(entry.node)] -
                     std::copysign(body.radius, entry.weight) *
                         contacts.normal[static_cast<std::size_t>(entry.contact)]);

@@ -99,7 +99,7 @@ Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> 
 
 std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                                                   std::span<const MeasuredQuantity> quantities, double wanted_error) {
-    if (std::ranges::none_of(quantities, counts)) return {};
+    if (std::ranges::none_of(quantities, has_usable_error)) return {};
     const std::vector<Option> meshes = mesh_options(family), steps = factor_options(family, &StudyVariant::step),
                               tolerances = factor_options(family, &StudyVariant::tolerance);
     std::vector<Prediction> predictions;
