@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 
 #include "engine/world/tuning.h"
 #include "tests/support/sliver_box.h"
@@ -404,6 +405,30 @@ TEST_CASE("a ball that fell presses by its weight alone while it sleeps", "[scen
     REQUIRE(world.asleep(ball));
     REQUIRE(world.advance(0.1).ok());
     CHECK(world.forces().on(ball, floor).force().z() == Approx(world.mass(ball) * standard_gravity).epsilon(1e-6));
+}
+
+TEST_CASE("an attachment that has stopped carries the weight alone while its body sleeps", "[scene]") {
+    // In its first step at rest the attachment takes the momentum of the body.
+    for (const BodyDynamics dynamics :
+         {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
+        CAPTURE(name_of(dynamics));
+        World world{Settings{}};
+        const auto wood = world.add_material({.young_modulus = 1e9});
+        const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
+        const auto body = world.add_body(cube, {.material = wood, .dynamics = dynamics});
+        std::vector<Index> all(cube.nodes.size());
+        std::iota(all.begin(), all.end(), 0);
+        const auto hold = world.attach(body, all, {.velocity = {0, 0, 1}});
+        world.measure_forces(true);
+        REQUIRE(world.advance(0.1).ok());
+        world.set_velocity(hold, Vec3::Zero());
+        while (!world.asleep(body) && world.time() < 3) REQUIRE(world.advance(1.0 / 60).ok());
+        REQUIRE(world.asleep(body));
+        REQUIRE(world.advance(0.1).ok());
+        const Vec3 force = world.forces().by(hold).force();
+        CHECK(force.z() == Approx(world.mass(body) * standard_gravity).epsilon(1e-6));
+        CHECK(force.head<2>().norm() < 1e-6 * force.z());
+    }
 }
 
 TEST_CASE("measuring changes no step, costs nothing if it is off, and reading then fails with a message", "[scene]") {

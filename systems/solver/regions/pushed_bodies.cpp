@@ -72,16 +72,16 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
     return along < -rounding ? along / stage_.h : 0;
 }
 
-Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
+SweepChange PushedBodies::sweep_joints(std::span<Vec4> push) const {
     const std::span<Vec4> impulse = memory_.workspace[0];
-    Real size = 0;
+    SweepChange sum;
     for (std::size_t at = row_.size(); at < row_.size() + memory_.joint.size(); ++at) {
         const auto i = static_cast<Index>(at);
         const RigidPart& part = memory_.part[at];
         const JointLaw& law = *op_.joint(i);
         if (law.mimic != 0) {
             if (op_.mobility(i) > 0)
-                size += op_.solve_mimic(
+                sum.size += op_.solve_mimic(
                     i, 1, [&](Index k) { return op_.velocity_at(k, push.data()); },
                     [&](Index k, const Vec4& change) {
                         op_.apply_undeformed(k, change, push.data());
@@ -97,9 +97,20 @@ Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
         if (change.isZero(0)) continue;
         op_.apply_undeformed(i, change, push.data());
         impulse[at] = next;
-        size += op_.inner(i, change, change);
+        sum.size += op_.inner(i, change, change);
+        sum.against -= op_.inner(i, change, next - memory_.workspace[1][at]);
     }
-    return size;
+    return sum;
+}
+
+void PushedBodies::remember() const {
+    std::ranges::copy(memory_.workspace[0].subspan(row_.size(), memory_.joint.size()),
+                      memory_.workspace[1].begin() + static_cast<std::ptrdiff_t>(row_.size()));
+}
+
+void PushedBodies::extrapolate(Real factor) const {
+    extrapolate_range(row_.size(), row_.size() + memory_.joint.size(), factor, memory_.workspace[0],
+                      memory_.workspace[1]);
 }
 
 AxisBounds PushedBodies::bounds(std::size_t at, const JointLaw& law) const {
