@@ -148,8 +148,8 @@ private:
         for (Index iteration = 1;; ++iteration) {
             const bool accelerated = iteration > plain_sweeps && !only_equations;
             const SweepChange change = sweep_once(only_equations, accelerated);
-            if (change.size == 0 || (change.size <= small && !stage_.settings.fixed_iterations)) return 0;
-            if (iteration >= stage_.settings.max_iterations) return change.size;
+            if (change.squared_change == 0 || (change.squared_change <= small && !stage_.settings.fixed_iterations)) return 0;
+            if (iteration >= stage_.settings.max_iterations) return change.squared_change;
             if (accelerated)
                 extrapolate(acceleration.next(change, false));
             else if (iteration == plain_sweeps)
@@ -157,7 +157,7 @@ private:
         }
     }
 
-    /// Does one sweep. SweepChange::against is computed only if the sweeps are `accelerated`.
+    /// Does one sweep. SweepChange::reversal is computed only if the sweeps are `accelerated`.
     SweepChange sweep_once(bool only_equations, bool accelerated) {
         const SweepChange of_joints = others_.sweep_joints(velocity_);
         return region_.traversal.template sum<SweepChange>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
@@ -167,9 +167,9 @@ private:
                 Real& impulse = memory_.impulse[i];
                 const Real before = impulse;
                 const Real size = op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), impulse);
-                sum.size += size;
+                sum.squared_change += size;
                 if (accelerated && impulse != before)
-                    sum.against -= size / (impulse - before) * (impulse - memory_.impulse_before[i]);
+                    sum.reversal -= size / (impulse - before) * (impulse - memory_.impulse_before[i]);
             }
             return sum;
         });

@@ -81,7 +81,7 @@ SweepChange PushedBodies::sweep_joints(std::span<Vec4> push) const {
         const JointLaw& law = *op_.joint(i);
         if (law.mimic != 0) {
             if (op_.mobility(i) > 0)
-                sum.size += op_.solve_mimic(
+                sum.squared_change += op_.solve_mimic(
                     i, 1, [&](Index k) { return op_.velocity_at(k, push.data()); },
                     [&](Index k, const Vec4& change) {
                         op_.apply_undeformed(k, change, push.data());
@@ -97,8 +97,8 @@ SweepChange PushedBodies::sweep_joints(std::span<Vec4> push) const {
         if (change.isZero(0)) continue;
         op_.apply_undeformed(i, change, push.data());
         impulse[at] = next;
-        sum.size += op_.inner(i, change, change);
-        sum.against -= op_.inner(i, change, next - memory_.workspace[1][at]);
+        sum.squared_change += op_.inner(i, change, change);
+        sum.reversal -= op_.inner(i, change, next - memory_.workspace[1][at]);
     }
     return sum;
 }
