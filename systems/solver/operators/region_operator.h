@@ -26,9 +26,11 @@ struct ContactMemory {
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
 };
 
-/// Base class of operators. `Own` is the operator: it derives from this class and adds sweeps. It also defines moves()
-/// (whether a contact can move anything), squared_residual() (the contact's term in the squared error), free_velocity()
-/// (velocity without impulses) and add_response() (velocity change by impulses).
+/// Base class of operators. `Own` is the operator that derives from it. It adds sweeps and defines
+/// - moves(): whether a contact can move anything,
+/// - squared_residual(): the contact's term in the squared error,
+/// - free_velocity(): velocity without impulses,
+/// - add_response(): velocity change by impulses.
 template <class Own, RegionOrder Traversal, class Memory>
 class RegionOperatorBase {
 public:

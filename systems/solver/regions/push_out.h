@@ -102,9 +102,9 @@ private:
 
     void sweep(Real requested) {
         if (sweep_rows(region_.tolerance * region_.tolerance * requested, false)) return;
-        // Joints and ties can prevent a contact from being pushed apart, so that these sweeps do not converge. Joints
-        // and ties then take precedence: the last sweeps visit only them. Otherwise their positions would keep an
-        // error, and the next velocity solve would demand a motion that the contact forbids.
+        // Joints and ties can prevent contacts from being pushed apart, so that the sweeps do not converge. The last
+        // sweeps then visit only joints and ties: if their positions kept an error, the next velocity solve would
+        // demand a motion that the contacts forbid.
         constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
         sweep_rows(rounding * requested, true);
     }
@@ -137,11 +137,12 @@ private:
     const Real slop_;
 };
 
-/// Finds frictionless pseudo velocities p, which move positions only. p_n: normal part of p. u_n: normal velocity of a
-/// contact after the velocity solve. Contacts that penetrate by more than the slop (push_slop) get u_n + p_n >=
-/// min(recovery |gap| / h, recovery_speed); push_speed limits the right-hand side further. At any other contact, the
-/// push may close the gap that remains after the velocity solve, but not more. The solution of the velocity solve must
-/// already be in `stage.out`. The result is in region.memory.scratch. Returns false if no contact is pushed.
+/// Finds frictionless pseudo velocities, which move positions only (docs/methods/contact.md 3.4). The solution of the
+/// velocity solve must already be in `stage.out`. The result is in region.memory.scratch. Returns false if no contact
+/// is pushed.
+/// - Contacts that penetrate by more than push_slop separate at least at push_speed, by velocity and pseudo velocity
+///   together.
+/// - At any other contact, the push may close the gap that remains after the velocity solve, but not more.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);
