@@ -13,9 +13,9 @@ inline constexpr bool access_is_checked = true;
 inline constexpr bool access_is_checked = false;
 #endif
 
-/// Observer of column accesses. While an AccessScope exists on a thread, every access of the thread to a column calls
-/// touched() of the scope's AccessWatch. touched() throws if the access is not allowed. `column`: address of the Column
-/// or of one of its members; `bytes`: size of the object at this address.
+/// Interface that checks accesses to columns. While an AccessScope exists on a thread, each access of this thread to a
+/// column calls touched(), which throws if the access is not allowed. `column`: address of the Column or of one of its
+/// members. `bytes`: size of the object at this address.
 class AccessWatch {
 public:
     virtual void touched(const void* column, std::size_t bytes, bool writes) const = 0;
@@ -54,9 +54,9 @@ private:
     const AccessWatch* before_;
 };
 
-/// Member of Column. When a column is copied or moved, this member is, too. It then reports an access to the column to
-/// the AccessWatch of the thread. AccessWatch::touched() throws if the access is not allowed. A copy passes this
-/// exception on. A move is noexcept, so the exception terminates the program with a message.
+/// Member of Column that reports copies and moves of the column to the AccessWatch of the thread. If the access is not
+/// allowed, AccessWatch::touched() throws. A copy passes the exception on; a move is noexcept, so the program
+/// terminates with a message.
 class CopyCheck {
 public:
     CopyCheck() = default;

@@ -29,10 +29,9 @@ enum class GhostKind : std::uint8_t {
     led,   // this rank computes no forces of the ghost, and receives its predicted velocities from the owner
 };
 
-/// A frame that translates with a body but does not rotate. Distances inside a body change only if its nodes move
-/// relative to the frame. The distance between two bodies also changes if one frame moves relative to the other. The
-/// collision search bounds these two kinds of motion separately. The motion of the frame then does not use up the
-/// margins of the search for contacts of a body with itself (docs/methods/collision.md 2).
+/// Frame that translates with a body but does not rotate. The collision search bounds two motions separately: that of
+/// the nodes in the frame, and that of the frame. Only the first changes distances inside a body
+/// (docs/methods/collision.md 2).
 struct MovingFrame {
     Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when BodyTable::displacement was last zero [m/s]
     Vec3 offset = Vec3::Zero();    // displacement of the frame since BodyTable::displacement was last zero [m]
@@ -69,20 +68,21 @@ struct BodyTable {
     // thickness of the layer around the surface in which contacts act; two bodies in contact use the mean of their
     // thicknesses [m]
     Column<Real> contact_distance;
-    // Number of core nodes, which define the surface of a round rigid body. They are the first nodes of the body. 0:
-    // the body is not round, and its triangles define the surface. Sphere: 1 core node, its centre. Capsule: 2 core
-    // nodes, the ends of its axis. The surface of a sphere or capsule is at the distance round_radius [m] from the
-    // centre or axis. Cylinder: 3 core nodes, its centre, the centre of one end, and a point on the rim of that end.
-    // For a cylinder round_radius is the radius of the bounding ball [m].
+    // Number of core nodes: the first nodes of a round rigid body, which define its surface. 0: the body is not round.
+    // - sphere: 1 core node, its centre
+    // - capsule: 2 core nodes, the ends of its axis
+    // - cylinder: 3 core nodes, its centre, the centre of one end, and a point on the rim of that end
     Column<Index> core_nodes;
+    // distance of the surface from the centre of a sphere or the axis of a capsule; for a cylinder: radius of the
+    // bounding ball [m]
     Column<Real> round_radius;
     Column<Real> mean_edge;     // mean edge length of the surface in the rest shape [m]
     Column<Real> min_altitude;  // smallest altitude of the elements in the rest shape [m]
     Column<Real> rest_step;     // longest stable step of the body in its rest shape [s]
     Column<Real> stable_step;   // longest stable step of the body in its shape at the last check [s]
-    // Step length for which the clusters of the body were made. A cluster is a group of nodes around elements that are
-    // integrated implicitly (NodeClusters). These elements are stable up to this step, unless they become stiffer than
-    // assumed. 0: the body has no clusters [s].
+    // Longest step for which the clusters of the body are stable, unless their elements become stiffer than assumed; 0:
+    // the body has no clusters [s]. A cluster is a group of nodes around elements that are integrated implicitly
+    // (NodeClusters).
     Column<Real> cluster_step;
     // 1: the body is asleep. Steps do not compute a sleeping body until it is woken, for example by a contact or a
     // changed load.
@@ -90,22 +90,24 @@ struct BodyTable {
     Column<GhostKind> ghost;  // derived by note_ghosts; empty in a world that is not divided among ranks
     // 1: the body is asleep or a led ghost, so this step computes no forces on it. Derived by Model::note_rest.
     Column<std::uint8_t> idle;
-    // Number of further steps in which the elements of the body are not computed, because the body counts as undeformed
-    // and unrotated, so that its elements exert no force. After these steps the body is tested again
-    // (find_unstrained.h). 0: the elements are computed.
+    // Number of further steps in which the elements of the body are not computed, because it counts as undeformed and
+    // unrotated and they exert no force. Then the body is tested again (find_unstrained.h). 0: the elements are
+    // computed.
     Column<std::uint16_t> unstrained;
     // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
-    // Measurements of stillness (stillness.h), used if SleepSettings::own_limits is set. The sleep time, for which a
-    // body must be still before it falls asleep, is divided into two halves. |drift|: largest distance, measured in the
-    // current half, of a node from its position at the start of the half (NodeTable::still_position) [m]. The sign of
-    // `drift` is a flag. It is negative if a measurement was below an earlier one: the body then does not move steadily
-    // in one direction. `drift_before`: |drift| at the end of the previous half [m].
+    // Measurements of stillness, used if SleepSettings::own_limits is set (stillness.h). A body falls asleep after it
+    // has been still for the sleep time, which is divided into two halves.
+    // - |drift|: largest distance of a node from its position at the start of the present half
+    //   (NodeTable::still_position) [m]
+    // - drift < 0: a measurement was below an earlier one, so the body does not move steadily in one direction
+    // - drift_before: |drift| at the end of the previous half [m]
     Column<Real> drift, drift_before;
-    // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
-    // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before` serves to detect a shape
-    // that creeps in one direction. It is shape_drift at the end of the previous half if the last measurement of that
-    // half gave the largest distance. Otherwise the shape had begun to move back, and `creep_before` is 0 [m].
+    // `shape_drift`: largest distance in the present half of the sleep time between the shape of the body and its shape
+    // at the start of the half (stillness.h: shape_distance) [m].
+    //
+    // `creep_before`: shape_drift at the end of the previous half, to detect a shape that creeps in one direction; 0 if
+    // the last measurement of that half was below an earlier one, because the shape had begun to move back [m].
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
@@ -115,9 +117,9 @@ struct BodyTable {
     // maximum of |position - displacement_origin - frame.offset|. A reset stores the present positions in
     // displacement_origin.
     Column<Real> displacement;
-    // Counter that bounds how far nodes move relative to the frame [m]. It is the sum of the changes of `displacement`,
-    // except its resets to zero. Since an earlier time t, no node has moved relative to the frame by more than travel -
-    // travel(t) + 2 displacement(t), where (t) marks the values at the time t (docs/methods/collision.md 2.1).
+    // Counter that bounds how far nodes move relative to the frame: the sum of the changes of `displacement`, without
+    // its resets to zero [m]. Let travel_0 and displacement_0 be the values at an earlier time. Since then no node has
+    // moved by more than travel - travel_0 + 2 displacement_0 (docs/methods/collision.md 2.1).
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;

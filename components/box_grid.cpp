@@ -6,8 +6,8 @@
 
 namespace skerry {
 
-/// Exponent of the smallest power of two above the longest edge of the box. The rounding error of the edge length never
-/// makes the exponent too small: a length of at least 2^n is never rounded to less, because 2^n is representable.
+/// Exponent of the smallest power of two above the longest edge of the box. Rounding of the edge length never makes it
+/// too small: a length of at least 2^n is not rounded below 2^n, because 2^n is representable.
 BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
     // Limits of the edge length [m]. They ensure that the edges of cells are finite and above zero.
     constexpr Real min_extent = std::numeric_limits<Real>::min(), max_extent = 0x1p1000;

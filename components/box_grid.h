@@ -13,21 +13,22 @@
 
 namespace skerry {
 
-/// Hashed grids, one for each cell width that occurs; all cell widths are powers of two. A box is stored in the grid
-/// with the smallest cells that are wider than the longest edge of the box. There it is stored in the cell that
-/// contains its lower corner, so it extends beyond this cell by less than one cell width, towards greater coordinates.
-/// A query for a box therefore visits the cells that this box overlaps, and one more layer of cells on the side of
-/// smaller coordinates. Cells are found by hashing their integer coordinates (Teschner, Heidelberger, Müller,
-/// Pomeranets, Gross 2003; grids of several sizes: Mirtich 1996). The next call of `build` reuses the memory.
+/// Hashed grids that find overlapping boxes, one grid for each cell width that occurs; all widths are powers of two
+/// (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003; grids of several sizes: Mirtich 1996).
+///
+/// Each box is stored once: in the grid with the smallest cells that are wider than its longest edge, in the cell of
+/// its lower corner. It extends beyond this cell by less than one cell width. A query therefore visits the cells that
+/// its box overlaps, and one more layer of cells on the side of smaller coordinates. The next call of `build` reuses
+/// the memory.
 class BoxGrid {
 public:
     /// Builds the grid from the boxes box[r] for all r in `rows`. These boxes must be finite. `box` must stay unchanged
     /// while the grid is queried.
     void build(std::span<const Aabb> box, std::span<const Index> rows);
 
-    /// Calls visit(other) once for each of those inserted rows whose boxes may overlap the box of `row` and that come
-    /// after `row`. These are the rows in coarser grids than that of `row`, and the rows with greater indices in the
-    /// same grid. So a loop over all inserted rows visits each pair of boxes that share a point exactly once.
+    /// Calls visit(other) once for each inserted row after `row` whose box may overlap the box of `row`. Rows in
+    /// coarser grids come after `row`, and rows with greater indices in the same grid. A loop over all inserted rows
+    /// thus visits each pair of boxes that share a point exactly once.
     template <class Visit>
     void for_each_near(Index row, Visit&& visit) const {
         const Aabb& box = box_[static_cast<std::size_t>(row)];

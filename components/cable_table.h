@@ -82,9 +82,10 @@ struct CableTable {
 };
 
 /// Equations of a cable, or of a tie of the kind `ball` (TieKind), in a step. Unlike a contact, a block has any number
-/// of points. A cable has one impulse for each segment: the impulse of the tension that pulls both ends of the segment
-/// together. A tie has one impulse vector, which acts on all its points. Its equation: the sum of the velocities of the
-/// points, weighted by their stencils, is zero.
+/// of points.
+/// - cable: one impulse for each segment; its tension pulls both ends of the segment together
+/// - tie: one impulse vector, which acts on all points; the sum of the velocities of the points, weighted by their
+///   stencils, is zero
 struct CableBlock {
     Index cable;   // row of CableTable; for a tie, row of TieTable
     Range points;  // rows of those columns of CableBlockTable that have one row per point

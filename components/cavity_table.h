@@ -42,9 +42,9 @@ struct CavityTable {
     Column<Range> keys;
     Column<CavityFluid> fluid;
     Column<Real> mass;  // mass of the gas [kg]
-    // Volume of a cavity that is not closed, at the end of the last step [m^3]. The faces then had the nodes at
-    // `corners`. The present volume is greater by the volume that the faces have swept since then. Unused if `closed`
-    // is 1 or the law is `pressure`.
+    // Volume at the end of the last step, for a cavity that is not closed; its faces then had the nodes at `corners`
+    // [m^3]. The volume that the faces sweep afterwards is added to it. Unused if `closed` is 1 or the law is
+    // `pressure`.
     Column<Real> volume;
     Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
     // Power that the forces of the last step exert on free nodes with their velocities after this step [W]; unused for

@@ -20,10 +20,15 @@ inline constexpr std::uint64_t value_count<ColliderShape> = 7;
 /// A collider shape in its own frame. Its axis is the z axis. All shapes but bucket and mesh are centred at the origin.
 struct ColliderGeometry {
     ColliderShape shape;
-    // Dimensions of the shape [m]. plane: unused, the normal is +z. sphere: (radius, -, -). box: half extents. capsule:
-    // (radius, half length of the segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height,
-    // wall thickness); the inner side of the floor is at z = 0, the top is open, and the wall thickness also applies to
-    // the floor. mesh: unused, see BodyTable::collider.
+    // Dimensions of the shape [m]:
+    // - plane: unused, the normal is +z
+    // - sphere: (radius, -, -)
+    // - box: half extents
+    // - capsule: (radius, half length of the segment, -)
+    // - cylinder: (radius, half height, -)
+    // - bucket: (inner radius, inner height, thickness of wall and floor); the inner side of the floor is at z = 0, the
+    //   top is open
+    // - mesh: unused, see BodyTable::collider
     Vec3 size;
 };
 template <>
@@ -80,9 +85,9 @@ struct ColliderTable {
     Column<Index> material;          // row of MaterialTable: material of the surface, or no_index
     Column<CollisionFilter> filter;  // groups that the collider belongs to, and groups that it collides with
     Column<Index> body;              // row of BodyTable: kinematic body of a mesh collider, else no_index
-    // Counter that bounds the motion of the collider from above. In any time interval, the points of the collider near
-    // bodies move no further than the counter increases [m]. Other points do not count, because a rotating plane moves
-    // arbitrarily fast far from its axis.
+    // Counter that bounds the motion of the collider: in any time interval, its points near bodies move no further than
+    // the counter increases [m]. Other points do not count, because a rotating plane moves arbitrarily fast far from
+    // its axis.
     Column<Real> travel;
 
     /// Visits the columns with one row per collider. The column `keyframe` is visited by for_each_column only.

@@ -20,12 +20,13 @@ enum class ContactState : std::uint8_t { open, stick, slide };
 template <>
 inline constexpr std::uint64_t value_count<ContactState> = 3;
 
-/// Identifies the two touching features across steps. Bits 63..62 of `pair` are the kind of the pair (0: two bodies, 1:
-/// body and collider); then follow the two handle slots (31 bits each). Bit 63 of `feature` is set for an edge-edge
-/// contact. Bit 62 is set if the point of a point-triangle contact belongs to the second body. Then follow the numbers
-/// of the point and triangle, or of the two edges, within their bodies (31 bits each). For a contact with an analytic
-/// collider, bit 63 marks an edge and bit 62 a face of the body (contact_key.h). Keys are unique in a world and stay
-/// valid when other bodies are removed.
+/// Identifies the two touching features across steps. Keys are unique in a world and stay valid when other bodies are
+/// removed.
+/// - `pair`: bits 63..62 are the kind (0: two bodies, 1: body and collider); then follow the two handle slots, 31 bits
+///   each
+/// - `feature`: bit 63 marks an edge-edge contact, bit 62 a point-triangle contact whose point belongs to the second
+///   body; then follow the numbers of point and triangle, or of the two edges, within their bodies, 31 bits each
+/// - `feature` of a contact with an analytic collider: bit 63 marks an edge, bit 62 a face of the body (contact_key.h)
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;

@@ -21,9 +21,9 @@ using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l is no
 using ElementGradient = std::array<ElementLane, 3>;  // component i of lane l is gradient[i][l] [1/m]
 using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
 using ElementForm = std::array<ElementLane, 6>;      // symmetric matrix: xx, yy, zz, xy, yz, zx
-// Coefficients q [1/(kg m^2)] and b [kg m^2] of the mass that an element gets in a bound on the stable step
-// (frame_masses.h). This mass is a quadratic form of node displacements: |X|^2/q + b (R:X)^2, with the gradient X of
-// the displacements and the rotation R of the body.
+// Coefficients q [1/(kg m^2)] and b [kg m^2] of the mass form of an element (docs/methods/stable_step.md 2.4). Node
+// displacements with the gradient X have the mass form |X|^2/q + b (R:X)^2, where R is the rotation of the body. A
+// bound on the stable step uses it (frame_masses.h).
 using FrameMass = std::array<ElementLane, 2>;
 
 /// Number of Maxwell elements (a spring in series with a dashpot) that act in parallel with the material law of each
@@ -31,11 +31,12 @@ using FrameMass = std::array<ElementLane, 2>;
 inline constexpr std::size_t maxwell_count = 3;
 // Relaxation rates of the Maxwell elements of a body, the highest first [1/s]
 using RelaxationRates = std::array<Real, maxwell_count>;
-// Strains of an element at the last step, in single precision; the viscous stress of the present step depends on them.
-// Each number is twice the strain, because twice Green's strain is F^T F - I. Entries 0 to 5: components xx, yy, zz,
-// xy, yz, zx of Green's strain. Entries 6 to 23: strains of the springs of the Maxwell elements, six components each.
-// Entry 24: volume strain of the spring of the bulk viscosity. Entry 25 is unused; with it a block fills whole cache
-// lines.
+// Twice the strains of an element at the last step, in single precision. The viscous stress of the present step depends
+// on them.
+// - entries 0 to 5: components xx, yy, zz, xy, yz, zx of twice Green's strain, F^T F - I
+// - entries 6 to 23: springs of the Maxwell elements, six components each
+// - entry 24: volume strain of the spring of the bulk viscosity
+// - entry 25: unused; with it a block fills whole cache lines
 using SpringStrain = std::array<Lanes<float, element_lanes>, 8 + 6 * maxwell_count>;
 inline constexpr std::size_t bulk_entry = 6 + 6 * maxwell_count;  // entry of the spring of the bulk viscosity
 
@@ -63,12 +64,13 @@ struct TetrahedronBlockTable {
     }
 };
 
-/// Elements that exert forces. An element has at least four nodes, one stress, and one deformation gradient F = sum_k
-/// x_k (x) g_k. x_k is the position and g_k the shape function gradient of node k (docs/methods/elasticity.md 1, 7).
-/// Element e of the table is lane e % element_lanes of block e / element_lanes. Unused lanes have no effect: their
-/// volume and gradients are zero, and they have nodes of the first element of the block. The number of rows of
-/// ElementNodeTable that a block has is the greatest node count of its elements. Elements with fewer nodes repeat some
-/// of their nodes with zero gradient.
+/// Elements that exert forces. An element has at least four nodes k, with positions x_k and shape function gradients
+/// g_k, one deformation gradient F = sum_k x_k (x) g_k, and one stress (docs/methods/elasticity.md 1, 7). Element e is
+/// lane e % element_lanes of block e / element_lanes.
+///
+/// A block has as many rows of ElementNodeTable as the greatest node count of its elements. Elements with fewer nodes
+/// repeat some of their nodes with zero gradient. Unused lanes have zero volume and gradients, and nodes of the first
+/// element of the block.
 struct ElementBlockTable {
     Column<Index> first;         // first row of the block in ElementNodeTable
     Column<Index> count;         // number of rows of the block in ElementNodeTable
@@ -76,14 +78,14 @@ struct ElementBlockTable {
     // For a bound on the stable step, the mass of each node is divided among its elements in proportion to these
     // weights (stable_step.h).
     Column<ElementLane> mass_share;
-    // Symmetric matrix Q [1/(kg m^2)]. A bound on the stable step divides the mass matrix of the nodes among the
-    // elements. The element gets the part G Q^-1 G^T, called its mass form (mass_forms.h). Row k of G is the gradient
-    // of node k. Q = 0: the element has no mass form, and mass_share is used instead.
+    // Symmetric matrix Q of the mass form of the element [1/(kg m^2)]. The form is the part G Q^-1 G^T of the mass
+    // matrix of the nodes, where row k of G is the gradient of node k; it serves for a bound on the stable step
+    // (mass_forms.h). Q = 0: mass_share is used instead.
     Column<ElementForm> mass_form;
-    // A second bound on the stable step uses one rotation for the whole body (frame_masses.h). `frame_mass`:
-    // coefficients of the mass that the element gets in this bound. `frame_bound`: upper bound of omega^2 that these
-    // masses give for the rest shape, with the highest circular frequency omega of the body [1/s^2]; 0: the body has no
-    // such masses.
+    // Mass forms for a second bound on the stable step, with one rotation for the whole body
+    // (docs/methods/stable_step.md 2.4). `frame_mass`: coefficients of the form of each element. `frame_bound`: upper
+    // bound of omega^2 by these forms for the rest shape, with the highest circular frequency omega; 0: the body has no
+    // such forms [1/s^2].
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound;
     // Stiffness that the implicit integration assumes for an element of a cluster; 0: the element is explicit [Pa].
@@ -171,8 +173,8 @@ struct ElementNodeTable {
 using ElementViscousImpulse = std::array<ElementLane, 9>;
 
 /// Patches: groups of neighbouring blocks of one body. Element forces are first summed within each patch, in cache;
-/// then the force on a node is the sum over the few patches that contain it. build_patches makes the patches from the
-/// element blocks, body after body, and appends them to these columns. No other table refers to their rows.
+/// then the force on a node is the sum over the few patches that contain it. build_patches appends the rows, body after
+/// body. No other table refers to them.
 struct ElementPatches {
     Column<Range> blocks;  // by patch: rows of ElementBlockTable
     // by patch: its slots (rows of the columns below that are listed by slot), one for each node of the patch

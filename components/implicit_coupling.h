@@ -13,15 +13,16 @@ namespace skerry {
 /// Written by couple_implicit_bodies.
 struct ImplicitCoupling {
     Ragged<Index> nodes;  // by row of RigidBodyTable: the nodes with contacts, as ascending rows of NodeTable
-    // For each row of RigidBodyTable: matrix that maps impulses on the nodes with contacts to velocities of these
-    // nodes, in the frame of the mesh [1/kg]. The matrix is symmetric, stored column by column, and has three rows per
-    // node. The implicit bodies own the memory.
+    // Symmetric matrix that maps impulses on the nodes with contacts to velocities of these nodes, in the frame of the
+    // mesh [1/kg]; one for each row of RigidBodyTable. It is stored column by column, with three rows per node. The
+    // implicit bodies own the memory.
     Column<std::span<const Real>> response;
-    // Matrices, one for each row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world
-    // frame. `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
-    // parameter theta of the time integration. It also contains the factor t/h if the body is in a long step, which
-    // covers several steps of the world: h is the length of the present step of the world, and t the time from the
-    // start of the long step to the end of the present step (docs/methods/implicit_bodies.md 9).
+    // Matrices, one for each row of RigidBodyTable.
+    // - `turn` rotates velocities from the frame of the mesh to the world frame.
+    // - `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
+    //   parameter theta of the time integration. In a long step, which covers several steps of the world, it also
+    //   contains the factor t/h (docs/methods/implicit_bodies.md 9). h is the length of the present step of the world,
+    //   t the time from the start of the long step to the end of the present step.
     Column<Mat3> turn, impulse_turn;
     Column<Index> touched_index;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
 

@@ -1,6 +1,5 @@
-// One row per node of the implicit bodies, body after body, in node order. A row describes the deformation of the body
-// at the node. The deformation is measured in the frame of the mesh, which moves like a rigid body
-// (docs/methods/implicit_bodies.md 1).
+// Deformation of the implicit bodies, one row per node: body after body, in node order. It is measured in the frame of
+// the mesh, which moves like a rigid body (docs/methods/implicit_bodies.md 1).
 #pragma once
 
 #include "components/column.h"
@@ -13,11 +12,12 @@ struct ImplicitNodeTable {
     Column<Vec3> displacement;  // displacement u by the deformation, in the frame of the mesh [m]
     // deformation velocity w; for a body held by an attachment: world velocity in the axes of the frame [m/s]
     Column<Vec3> velocity;
-    // Effect of the contacts of the previous long step. A long step is a step of the body that covers several steps of
-    // the world. The present long step first assumes that these contacts act again, and gradually replaces them by its
-    // own contacts (docs/methods/implicit_bodies.md 9). The value is the change of the velocity w by these contacts,
-    // times the length of the previous long step [m]. Zero for bodies without long steps. carry_long_steps writes the
-    // column.
+    // Effect of the contacts of the previous long step, which is a step of the body that covers several steps of the
+    // world: their change of the velocity w, times the length of that long step [m]. The present long step first
+    // assumes that these contacts act again, and gradually replaces them by its own (docs/methods/implicit_bodies.md
+    // 9).
+    //
+    // Zero for bodies without long steps. carry_long_steps writes the column.
     Column<Vec3> left;
     // kick_implicit_bodies writes the next three columns in this step.
     Column<Vec3> elastic_force;

@@ -152,10 +152,12 @@ struct AxisLaw {
     Real kick = 0;  // time for which forces act in this step [s]
 };
 
-/// Role of a block in a mimic equation. Such an equation couples the velocities u and u_leader along the axes of two
-/// joints: c u + c_leader u_leader = r. c and c_leader are coefficients, and the rate r corrects the error of the
-/// coordinates (docs/methods/joints.md 5). The equation is stored in two adjacent blocks: first the block of the joint
-/// that mimics, then that of its leader. Only the third rows of these blocks are used.
+/// Role of a block in a mimic equation (docs/methods/joints.md 5). The equation couples the velocities u and u_leader
+/// along the axes of two joints, with coefficients c and c_leader: c u + c_leader u_leader = r. The rate r corrects the
+/// error of the coordinates.
+///
+/// Two adjacent blocks store the equation: first that of the joint that mimics, then that of its leader. Only the third
+/// rows of these blocks are used.
 struct MimicShare {
     Real coefficient = 0;  // c of the block; 0: the block belongs to no mimic equation
     bool leads = false;    // true for the block of the leader
@@ -203,8 +205,8 @@ struct JointBlockTable {
     Column<AxisImpulses> axis_impulse;  // by block: impulses along the joint axis
     Column<Real> coordinate;            // by row of JointTable: joint coordinate at the start of the step
     // For each row of JointTable: 1 if neither body of the joint can move, because it is asleep, held, or the world.
-    // The joint then has no block and keeps its last impulse. Exception: while no body of the world sleeps, joints are
-    // not tested, and the value is 0 for all of them.
+    // The joint then has no block and keeps its last impulse. While no body of the world sleeps, joints are not tested,
+    // and all values are 0.
     Column<std::uint8_t> resting;
 
     std::size_t size() const { return block.size(); }

@@ -20,9 +20,9 @@ struct alignas(sizeof(T) * W <= 64 ? sizeof(T) * W : 64) Lanes {
     const T& operator[](std::size_t i) const { return lane[i]; }
 };
 
-/// A vector of element_lanes reals. The vector fills one register, or two or four registers on older machines. A vector
-/// type of the compiler is used instead of a loop over Lanes. Such a type does not depend on auto-vectorisation. Every
-/// lane gets bitwise the result that the same source code computes for a single Real.
+/// A vector of element_lanes reals. It fills one register, or two or four on older machines. Unlike a loop over Lanes,
+/// a vector type of the compiler does not depend on auto-vectorisation. Every lane gets bitwise the result of the same
+/// source code for a single Real.
 typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 
 /// Half of the lanes of a Real8.
@@ -34,8 +34,8 @@ typedef float Float8 __attribute__((vector_size(sizeof(float) * element_lanes)))
 typedef float Float4 __attribute__((vector_size(sizeof(float) * element_lanes / 2)));
 
 // Types for loads of vectors from the address of any Real. They need no alignment and may alias other reals. memcpy
-// would be slower: without 512-bit registers the compiler turns it into copies of 16 bytes to a temporary variable. A
-// load of 32 bytes from this variable would have to wait for these copies.
+// would be slower without 512-bit registers: it copies 16 bytes at a time to a temporary variable, and a load of 32
+// bytes from this variable has to wait.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 typedef float Float8InMemory __attribute__((vector_size(sizeof(Float8)), may_alias));

@@ -25,10 +25,12 @@ struct LoadTable {
     Column<Range> nodes;    // range of rows in the columns `node` and `weight`; empty for fields
     Column<Range> faces;    // range of rows in the column `face`; empty except for tractions
     Column<Range> scale_keys;  // range of rows in the column `key`; never empty
-    // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and weights of these nodes. Force:
-    // fraction of the force that acts on the node. Traction on the rest area: area that belongs to the node [m^2]. A
-    // traction on the present area lists the three nodes of each face in turn; the weight is the number of loaded faces
-    // at the node and serves only to bound the stable step.
+    // Nodes of all forces and tractions, as numbers in the meshes of their bodies. The weight of a node depends on the
+    // load:
+    // - force: fraction of the force that acts on the node
+    // - traction on the rest area: area that belongs to the node [m^2]
+    // - traction on the present area, which lists the three nodes of each face in turn: number of loaded faces at the
+    //   node; it serves only to bound the stable step
     Column<Index> node;
     Column<Real> weight;
     Column<std::array<Index, 3>> face;  // faces of all tractions: node numbers in the meshes of their bodies

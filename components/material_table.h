@@ -25,9 +25,9 @@ struct MaterialConstants {
     // Terms of the law of Ogden. `share`: fraction of the shear modulus that the term contributes; 0: the term is
     // unused. `exponent`: exponent of the stretches.
     std::array<Real, 3> share{1, 0, 0}, exponent{2, 2, 2};
-    // Law `orthotropic`: six symmetric matrices M_k, each with the entries xx, yy, zz, xy, yz, zx. The stiffness is C =
-    // mu sum_k M_k (x) M_k + lambda I (x) I, with mu = shear_modulus and lambda = lame_lambda
-    // (systems/material/orthotropic.h). The initial values are those of an isotropic material.
+    // Six symmetric matrices M_k of the law `orthotropic`, each with the entries xx, yy, zz, xy, yz, zx; initially
+    // those of an isotropic material. With mu = shear_modulus and lambda = lame_lambda, the stiffness is
+    // mu sum_k M_k (x) M_k + lambda I (x) I (systems/material/orthotropic.h).
     std::array<Real, 36> strain_modes = [] {
         constexpr Real root_two = 1.4142135623730951;
         std::array<Real, 36> modes{};
@@ -47,9 +47,10 @@ struct MembersOf<MaterialConstants> {
     static std::span<const Member> list();
 };
 
-/// Part of the stress that an element exerts. whole: the complete stress. shear, volume: the part due to the Lame
-/// constant mu or lambda (part_of). guard: the stress of the inversion barrier, which keeps a tetrahedron from
-/// inverting. Only tetrahedra have an inversion barrier.
+/// Part of the stress that an element exerts.
+/// - whole: the complete stress
+/// - shear, volume: the part due to the Lame constant mu or lambda (part_of)
+/// - guard: the stress of the inversion barrier, which keeps a tetrahedron from inverting; only tetrahedra have one
 enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
 template <>
 inline constexpr std::uint64_t value_count<ElementPart> = 4;
@@ -57,16 +58,17 @@ inline constexpr std::uint64_t value_count<ElementPart> = 4;
 /// Ratio of the modulus of the inversion barrier to the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
 
-/// Material constants for one part of the stress. The part due to one Lame constant keeps this constant, and the other
-/// constant is zero. Exception: in a material that yields, the part `shear` has lambda = -2/3 mu, so that its bulk
-/// modulus lambda + 2/3 mu is zero. With lambda = 0 it would resist changes of volume. Its elements would then hinder
-/// plastic flow, which keeps the volume (volumetric locking). The constants of an inversion barrier include no damping.
+/// Material constants for one part of the stress: those of the material with one Lame constant, while the other one is
+/// zero. A material that yields is divided differently. The constants of an inversion barrier include no damping.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,
                 .shear_modulus = 0,
                 .lame_lambda = guard_modulus * (material.lame_lambda + 2 * material.shear_modulus),
                 .density = material.density};
+    // In a material that yields, the part `volume` has the complete bulk modulus lambda + 2/3 mu, and `shear` has none.
+    // With lambda = 0, `shear` would resist changes of volume, and so hinder plastic flow, which keeps the volume
+    // (volumetric locking).
     const Real volume_of_shear = material.yields() ? -2.0 / 3 * material.shear_modulus : 0;
     if (part == ElementPart::shear) material.lame_lambda = volume_of_shear;
     if (part == ElementPart::volume) {
@@ -76,9 +78,9 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     return material;
 }
 
-/// Surface properties of a material, body or collider. A negative property of a body is replaced by the property of its
-/// material. A negative property of a collider is replaced by the property of its material or, without a material, by
-/// that of the touching body.
+/// Surface properties of a material, body or collider. A negative property is replaced:
+/// - body: by the property of its material
+/// - collider: by the property of its material or, without a material, by that of the touching body
 struct SurfaceProperties {
     Real static_friction = -1;
     Real dynamic_friction = -1;

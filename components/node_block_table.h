@@ -30,10 +30,12 @@ inline Range step_nodes_of(Range all, Index core_nodes) {
 // they do not depend on the number of workers.
 inline constexpr Index nodes_per_block = 256;
 
-/// Sums over the nodes of one block that can move. Positions x and velocities v are relative to the first node of the
-/// body. damp_velocity adds up the sums of all blocks of a body in block order, and stores the totals in the entry of
-/// the first block. In the totals, `momentum` is in the world frame, and `angular_momentum` and `second_moment` are
-/// about the centre of mass.
+/// Sums over the nodes of one block that can move, with positions x and velocities v relative to the first node of the
+/// body.
+///
+/// damp_velocity adds up all blocks of a body in block order, and stores the totals in the entry of the first block. In
+/// these totals, `momentum` is in the world frame, and `angular_momentum` and `second_moment` are about the centre of
+/// mass.
 struct NodeBlockSums {
     Real mass;              // total mass [kg]
     Vec3 momentum;          // sum of m v, with node masses m [kg m/s]

@@ -79,9 +79,9 @@ enum class Integrator {
     // First order in the step length, because given velocities count as those of half a step before the start. The
     // energy error stays bounded.
     symplectic_euler,
-    // Second order in smooth motion, because forces are computed at the positions in the middle of each step. To this
-    // end, in a call of World::advance, the positions drift forward by half a step before the first step, and back by
-    // half a step after the last step.
+    // Second order in smooth motion, because forces are computed at the positions in the middle of each step. Each call
+    // of World::advance therefore moves the positions forward by half a step before the first step, and back after the
+    // last one.
     leapfrog,
 };
 

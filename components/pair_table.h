@@ -92,9 +92,9 @@ struct SelfSearch {
     Column<std::uint8_t> is_searched;  // by row of BvhTable: 1 for a leaf in LeafPairTable::searched
 };
 
-/// One row per pair of objects whose bounding boxes were close at the last broad search, in the order of
-/// ContactKey::pair. The candidate list of each pair is a separate column. One pair can therefore be searched again
-/// without moving the lists of other pairs. Candidate lists with an index of size() or more are spare memory.
+/// Pairs of objects whose bounding boxes were close at the last broad search, one row per pair, in the order of
+/// ContactKey::pair. The candidate list of each pair is a column of its own, so that one pair can be searched again
+/// without moving other lists. Lists with an index of size() or more are spare memory.
 struct PairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
     Column<PairKind> kind;
@@ -106,18 +106,18 @@ struct PairTable {
     Column<Vec3> frame_apart;  // MovingFrame::position of the first body minus that of the second body [m]
     // length of the path of the first body's frame relative to the second body's frame since the pair was found [m]
     Column<Real> frame_path;
-    // Counter that bounds the relative motion of the partners from above; computed in every step [m]. Two bodies:
-    // BodyTable::travel of both bodies plus frame_path. Body and collider: `travel` of the body and of the collider,
-    // plus the path length of the body's frame.
+    // Counter that bounds the relative motion of the partners from above; computed in every step [m]:
+    // - two bodies: BodyTable::travel of both bodies plus frame_path
+    // - body and collider: `travel` of the body and of the collider, plus the path length of the body's frame
     Column<Real> travel;
     Column<Real> travel_bound;  // `travel` plus the distance by which the partners may approach in this step [m]
-    // Distance by which the partners may approach in this step at their greatest speeds [m]. The speeds are relative to
-    // the world, not to the moving frames of the bodies. Reason: contacts depend on this distance, but no result may
-    // depend on the frames, which have the role `memory`.
+    // Distance by which the partners may approach in this step at their greatest speeds in the world [m]. Speeds in the
+    // moving frames of the bodies must not be used: contacts depend on this distance, but no result may depend on the
+    // frames, which have the role `memory`.
     Column<Real> closing;
-    // Request of an earlier attempt at this step, in which the partners moved too far for the candidate list: relative
-    // motion for which the list must be valid [m]; 0: no request. Once the list has been rebuilt for this motion, the
-    // value is made negative. A list for the same motion is then not requested again.
+    // Relative motion for which the candidate list must be valid, because the partners moved further than it allows in
+    // an earlier attempt at this step; 0: no request [m]. Once the list has been rebuilt, the value is made negative,
+    // so that a list for the same motion is not requested again.
     Column<Real> longer_motion;
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
     // 1: the candidate list was made from the positions at the start of this step. valid_until allows for displacements
@@ -275,11 +275,11 @@ struct SearchMemory {
     std::vector<Column<FoundCandidate>> found;  // by block of the search: found candidates
 };
 
-/// Limits that decide when the broad search, which finds the pairs, runs again; and counts of searches. An object that
-/// the user has added or moved is *forgotten*: all its pairs are found and searched again, while other pairs keep their
-/// candidate lists. New rows of objects, for which the columns are too short, count as forgotten. The rows of removed
-/// objects are erased from the columns.
+/// Limits that decide when the broad search, which finds the pairs, runs again; and counts of searches. The rows of
+/// removed objects are erased from the columns.
 struct SearchState {
+    // Limit of an object that the user has added or moved: all its pairs are found and searched again, while other
+    // pairs keep their candidate lists. New rows of objects, for which the columns are too short, count as forgotten.
     static constexpr Real forgotten = -infinity;
 
     // For each body: upper limit of body_travel_bound [m]. The set of pairs is complete while every body and every
@@ -295,9 +295,9 @@ struct SearchState {
     void forget_body(std::size_t row) {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
     }
-    /// Ends an attempt at a step. A `committed` step has measured the speeds of all bodies. After a rejected attempt,
-    /// the speeds of bodies that were forgotten at the start of the step are still unknown. These bodies are then
-    /// marked as forgotten again.
+    /// Ends an attempt at a step. After a rejected attempt, bodies that were forgotten at its start are marked as
+    /// forgotten again, because their speeds are still unknown. A `committed` step has measured the speeds of all
+    /// bodies.
     void end_step(bool committed) {
         if (!memory.any_unmeasured) return;
         for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)

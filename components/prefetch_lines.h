@@ -21,9 +21,11 @@ template <CacheLevel level = CacheLevel::l1, class T>
 }
 
 /// Prefetches into the L2 cache the lines of `count` items that come `ahead` items after `current`. The items may be
-/// past the end of the array, because a prefetch never faults. The L1 cache is too small for data that a loop needs
-/// many iterations later, and has few buffers for outstanding misses. If these prefetches filled the L1 cache, the
-/// elastic kernel would take 1.5 times as long for data in memory (`profile_elements`, mesh `large`).
+/// past the end of the array, because a prefetch never faults.
+///
+/// The L1 cache is too small for data that a loop needs many iterations later, and has few buffers for outstanding
+/// misses: with prefetches into L1, the elastic kernel would take 1.5 times as long for data in memory
+/// (`profile_elements`, mesh `large`).
 template <class T>
 [[gnu::always_inline]] inline void prefetch_lines_ahead(const T* current, std::size_t ahead, std::size_t count) {
     // The address is computed as an integer, because pointer arithmetic past the end of the array is undefined.

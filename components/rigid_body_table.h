@@ -14,9 +14,10 @@
 namespace skerry {
 
 /// Rigid motion of each rigid or implicit body. The principal frame of a body has its origin in the centre of mass and
-/// its axes along the principal axes of inertia. `axes` maps vectors from the principal frame to the frame of the mesh,
-/// `rotation` maps them to the world frame. A node of a rigid body is at center + rotation axes^T (rest_position -
-/// rest_center).
+/// its axes along the principal axes of inertia. `axes` maps vectors from it to the frame of the mesh, `rotation` to
+/// the world frame.
+///
+/// Position of a node of a rigid body: center + rotation axes^T (rest_position - rest_center).
 struct RigidBodyTable {
     Column<Index> body;  // row of BodyTable
     Column<Real> mass;   // [kg]
@@ -49,10 +50,9 @@ struct RigidBodyTable {
     // turn_rigid_bodies writes the next two columns.
     Column<Vec3> center_next;
     Column<Mat3> rotation_next;
-    // strain_implicit_bodies writes the next columns for bodies with large deformation. `moments_next`, `axes_next`:
-    // moments and axes of inertia of the new shape. `rotation_shaped`: rotation of the principal frame of the new
-    // shape, without the rigid rotation of this step. For all other bodies the three columns equal `moments`, `axes`
-    // and `rotation`.
+    // Moments and axes of inertia of the new shape, and rotation of its principal frame without the rigid rotation of
+    // this step. strain_implicit_bodies writes them for bodies with large deformation. For all other bodies they equal
+    // `moments`, `axes` and `rotation`.
     Column<Vec3> moments_next;
     Column<Mat3> axes_next, rotation_shaped;
     // Angular impulse of the attachment on a held implicit body. It balances the elastic forces, so that the frame of

@@ -12,9 +12,9 @@ namespace skerry {
 /// therefore never share a cache line.
 inline constexpr std::size_t row_alignment = 64;
 
-/// Allocates `bytes` bytes (0 is allowed) with operator new. On Linux, memory that covers complete pages of 2 MiB is
-/// requested as such pages. Reason: the columns of a large scene have more pages of 4 kB than the TLB of a core can
-/// hold. Address translation then takes 4 % of the time of a step (360,000 tetrahedra). Throws std::bad_alloc.
+/// Allocates `bytes` bytes (0 is allowed) with operator new. Throws std::bad_alloc. On Linux, memory that covers
+/// complete pages of 2 MiB is requested as such pages: the TLB of a core cannot hold all pages of 4 kB of a large
+/// scene, and address translation then takes 4 % of the time of a step (360,000 tetrahedra).
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory) noexcept;
 

@@ -91,8 +91,7 @@ template <class Enum>
 struct EnumNames;
 
 /// Number of values that an object of type T can have: 2 for bool, n for an enum with the values 0 to n - 1. A value
-/// loaded from a file must be smaller. 0 means that loaded values are not checked. This holds for all other types, and
-/// for some enums.
+/// loaded from a file must be smaller. 0 (all other types, and some enums): loaded values are not checked.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>

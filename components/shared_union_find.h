@@ -12,15 +12,13 @@
 namespace skerry {
 
 /// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). The
-/// root of a set is its smallest index, whatever the number of threads and the order of the joins. Reason: a join
-/// always attaches the greater of two roots to the smaller one, so parents are smaller than their children. A join is
-/// one compare-and-exchange. If it fails, because another thread has attached the greater root meanwhile, the join is
-/// repeated from the new root. Relaxed memory order suffices, because parent and stamp share one word, and no word
-/// tells a thread that other data are ready. Threads must synchronise before they read the final sets.
+/// root of a set is its smallest index, whatever the number of threads and the order of the joins. Threads must
+/// synchronise before they read the final sets.
 struct SharedUnionFind {
-    /// Each member is a word of two halves of 32 bits. The upper half is the stamp: the value of `now`, the number of
-    /// the present start(), when the word was written. A word with an earlier stamp counts as empty. The lower half is
-    /// the value: in `parent` the index of the parent, in `first` an item.
+    /// Each member is a word of two halves of 32 bits:
+    /// - upper half, the stamp: value of `now`, the number of the present start(), when the word was written. A word
+    ///   with an earlier stamp counts as empty.
+    /// - lower half, the value: in `parent` the index of the parent, in `first` an item
     struct Node {
         std::uint64_t parent;
         // At the root: smallest item passed to begin_with(), stored as its bitwise complement. Complete words can then
@@ -64,8 +62,10 @@ struct SharedUnionFind {
             a = root(a);
             b = root(b);
             if (a == b) return a;
+            // The greater root is always attached to the smaller one, so parents are smaller than their children.
             if (a < b) std::swap(a, b);
             std::uint64_t word = load(node[a].parent);
+            // If the exchange fails, another thread has attached `a` meanwhile; the join is repeated from the new root.
             if (parent_in(word, a) == a && exchange(node[a].parent, word, stamped(b))) return b;
         }
     }
@@ -93,6 +93,8 @@ private:
         return stamp_of(word) == now ? static_cast<Index>(static_cast<std::uint32_t>(word)) : index;
     }
 
+    // Relaxed memory order suffices, because parent and stamp share one word, and no word tells a thread that other
+    // data are ready.
     static std::uint64_t load(std::uint64_t& word) { return std::atomic_ref(word).load(std::memory_order_relaxed); }
     /// Compare-and-exchange of a word. On failure `expected` receives the current value of the word.
     static bool exchange(std::uint64_t& word, std::uint64_t& expected, std::uint64_t next) {

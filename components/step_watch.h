@@ -18,21 +18,22 @@ struct StepEvaluation {
     Index broken = no_index;   // first element whose frequency bound is not finite
     Real highest = 0;          // greatest bound of the squared frequency omega^2 of an element so far [1/s^2]
     Index element = no_index;  // element with the bound `highest`; valid if `highest` is above zero
-    // Value of `highest` (for bounds with frame masses: of `in_frame`) when the check of the current group of blocks
-    // began [1/s^2]. Bounds below this value need not be computed exactly. The blocks of a group are checked in
-    // parallel. All of them use the same value, so the result does not depend on the order of the threads.
+    // Limit below which bounds need not be computed exactly: value of `highest` (for bounds with frame masses: of
+    // `in_frame`) when the check of the current group of blocks began [1/s^2]. All blocks of a group use the same
+    // value, so the result does not depend on the order of the threads.
     Real known = 0;
-    // For a body with frame masses (frame_masses.h), whose bound uses one rotation for the whole body. This rotation is
-    // found from `deformation`: the sum of V F over the elements with volume V and deformation gradient F, column by
-    // column [m^3]. `in_frame` is the greatest bound of omega^2 of an element with the frame masses so far [1/s^2].
+    // Values for a body with frame masses, whose bound uses one rotation for the whole body (frame_masses.h).
+    // - deformation: sum of V F over the elements with volume V and deformation gradient F, column by column; it yields
+    //   the rotation [m^3]
+    // - in_frame: greatest bound of omega^2 of an element with the frame masses so far [1/s^2]
     std::array<Real, 9> deformation{};
     Real in_frame = 0;
     Index element_in_frame = no_index;
 };
 
 /// Checks the stable steps of all bodies, one body after the other, in endless rounds. The progress is part of the
-/// state. Only `steps` is hashed. Rejected attempts at a step also advance the other members, but how far these are
-/// advanced changes no result.
+/// state, but only `steps` is hashed: rejected attempts at a step also advance the other members, which changes no
+/// result.
 struct StepWatch {
     /// Value of `step` for a body that is not checked in this round. Possible reasons: its shape does not change (it is
     /// asleep or unstrained), another rank checks it, or forget() was called.

@@ -10,14 +10,14 @@
 
 namespace skerry {
 
-/// Boundary triangles with their corners counter-clockwise as seen from outside. A vertex or edge belongs to several
-/// triangles; the triangle with the lowest row owns it. When a search compares two triangles, it compares only the
-/// edges and vertices that they own. It thus finds each pair of features once.
+/// Boundary triangles with their corners counter-clockwise as seen from outside. A vertex or edge of several triangles
+/// is owned by the one with the lowest row. A search that compares two triangles compares only features that they own,
+/// and so finds each pair of features once.
 ///
-/// A round body (sphere, capsule or cylinder) has one degenerate triangle, its core. For a sphere or cylinder all three
-/// corners are the centre. For a capsule corner 0 is one end of the axis, and corners 1 and 2 are the other end; its
-/// side from corner 0 to corner 1, the axis, is its only edge. A side that is not an edge has the entry no_index in
-/// `edge`.
+/// A round body has one degenerate triangle, its core. A side that is not an edge has the entry no_index in `edge`.
+/// - sphere, cylinder: all three corners are the centre
+/// - capsule: corner 0 is one end of the axis, corners 1 and 2 are the other end; the only edge is the axis, from
+///   corner 0 to corner 1
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k connects corner k and corner (k + 1) % 3

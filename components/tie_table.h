@@ -34,9 +34,10 @@ struct TieTable {
     // Triangle of the second body, and weights of its corners. Used only if the second body deforms.
     Column<std::array<Index, 3>> corner;
     Column<Vec3> weight;
-    // Position of the node relative to the other object [m]. On a deformable body: relative to the point on the
-    // triangle, in the frame of the triangle (explicit body) or of the mesh (implicit body). On other objects: in the
-    // frame of the mesh (rigid body), of the collider, or of the world.
+    // Position of the node relative to the other object [m], by kind of object:
+    // - explicit body: relative to the point on the triangle, in the frame of the triangle
+    // - implicit body: relative to the point on the triangle, in the frame of the mesh
+    // - rigid body, collider, world: in the frame of the mesh, of the collider, or of the world
     Column<Vec3> place;
     // Unit normal of the other object, in the frame of `place`. If the other object deforms, the normal of the triangle
     // is used instead.

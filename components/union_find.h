@@ -11,7 +11,7 @@
 namespace skerry {
 
 /// Disjoint sets of the indices 0 .. count-1: union-find with path halving (Tarjan, van Leeuwen 1984, Worst-case
-/// analysis of set union algorithms). A join attaches the greater root to the smaller one. So the root of a set is its
+/// analysis of set union algorithms). A join attaches the greater root to the smaller one, so the root of a set is its
 /// smallest index, whatever the order of the joins. The next call of start() reuses the memory.
 struct UnionFind {
     /// Parent, stamp and number of an index. root() and number() read all three at random indices, so they are stored

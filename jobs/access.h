@@ -44,8 +44,8 @@ inline constexpr bool shows_other_data<RaggedView<T>> = true;
 template <class T>
 concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>;
 
-/// Converts columns, which the tables own, to spans, which functions take. A struct of inputs defines a static
-/// function `bind`:
+/// Converts columns, which the tables own, to spans, which functions take. A struct of inputs defines a static function
+/// `bind`:
 ///
 ///     struct RestInputs {
 ///         std::span<const Range> nodes;
@@ -56,9 +56,9 @@ concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>
 ///         }
 ///     };
 ///
-/// When a stage is added to the graph, bind runs with an access list and so declares the accesses of the stage. When
-/// the stage starts, bind runs without a list. The function bind must therefore request the same columns in both calls,
-/// whatever the columns contain: it must use read_if and write_if instead of `if`. bind must not allocate memory.
+/// When a stage is added to the graph, bind runs with an access list, in which it declares the accesses of the stage.
+/// When the stage starts, bind runs without a list. Both calls must request the same columns, whatever these contain,
+/// so bind uses read_if and write_if instead of `if`. It must not allocate memory.
 class Binder {
 public:
     Binder() = default;

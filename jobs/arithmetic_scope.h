@@ -7,11 +7,12 @@
 
 namespace skerry {
 
-/// Sets the floating-point mode: numbers are rounded to nearest, exceptions are masked, and denormals (magnitudes below
-/// 2^-1022) are treated as zero, both as operands and as results. The end of the scope restores the previous mode of
-/// the thread. Blocks and stages run in such a scope on every thread, so that all workers compute the same results.
-/// Denormals are treated as zero for speed: decaying motion ends in denormals, and arithmetic with them takes a hundred
-/// times as long as with other numbers (Intel 64 manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
+/// Sets the floating-point mode of the thread until the end of the scope: numbers are rounded to nearest, exceptions
+/// are masked, and denormals (magnitudes below 2^-1022) are treated as zero, both as operands and as results. Blocks
+/// and stages run in such a scope on every thread, so that all workers compute the same results.
+///
+/// Decaying motion ends in denormals, and arithmetic with them takes a hundred times as long as with other numbers
+/// (Intel 64 manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
 class ArithmeticScope {
 public:
 #if defined(__SSE2__)

@@ -33,9 +33,9 @@ public:
         if (workers <= 1) {
             job.drain(0);
         } else {
-            // The loop is isolated: a worker that waits for the last block must not start another stage meanwhile. A
-            // long stage would delay all work that waits for these blocks, and its time would count as time of the
-            // stage that called run_blocks.
+            // The loop is isolated: a worker that waits for the last block must not start another stage meanwhile. This
+            // stage would delay all work that waits for the blocks, and its time would count for the stage that called
+            // run_blocks.
             in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
         }
         job.rethrow();

@@ -45,11 +45,13 @@ private:
     std::exception_ptr error_;
 };
 
-/// The blocks of one run_blocks call, divided into one contiguous share per worker. A worker begins with its own share,
-/// because it wrote the data of this share in the previous loop and may still have them in its caches. Then it runs
-/// blocks of the following shares. Each share has a counter, from which any worker takes the next block. A call
-/// therefore needs only one task per worker instead of one per block, and a slow block delays no other block. After an
-/// exception the other blocks still run, so that the lowest failing block does not depend on timing.
+/// The blocks of one run_blocks call, divided into one contiguous share per worker. Each share has a counter, from
+/// which any worker takes the next block. So a call needs only one task per worker, and a slow block delays no other
+/// block.
+///
+/// A worker begins with its own share, whose data it wrote in the previous loop and may still have in its caches. Then
+/// it runs blocks of the following shares. After an exception the other blocks still run, so that the lowest failing
+/// block does not depend on timing.
 class BlockJob {
 public:
     BlockJob(Index count, FunctionRef<void(Index)> body, int workers)
@@ -150,9 +152,9 @@ public:
         return first;
     }
 
-    /// Runs the stage, then one of the stages that became ready, and so on until no stage became ready. Calls
-    /// spawn(stage) for all other stages that became ready. Returns the number of finished stages. After an exception
-    /// the remaining stages count as finished but are not run.
+    /// Runs the stage, then one of the stages that became ready, and so on until none became ready. Calls spawn(stage)
+    /// for all other stages that became ready. Returns the number of finished stages. After an exception the remaining
+    /// stages count as finished but are not run.
     template <class Spawn>
     Index run_from(Index stage, Spawn&& spawn) noexcept {
         Index done = 0;

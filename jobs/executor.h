@@ -20,9 +20,10 @@ struct GraphEdges {
 };
 
 /// A set of workers; the calling thread is one of them. Results never depend on the number of workers, because work is
-/// divided into fixed blocks. If a block or stage throws, run_blocks or run_graph rethrows the exception. If several
-/// throw, the exception of the lowest block or stage number is rethrown. After an exception, no further stage of the
-/// graph starts.
+/// divided into fixed blocks.
+///
+/// If blocks or stages throw, run_blocks or run_graph rethrows the exception of the lowest block or stage number. After
+/// an exception, no further stage of the graph starts.
 class Executor {
 public:
     virtual ~Executor() = default;
@@ -38,10 +39,12 @@ public:
     virtual void run_graph(const GraphEdges& edges, FunctionRef<void(Index stage)> run_stage) = 0;
 };
 
-/// Makes an executor of the given backend; `automatic` selects the first backend of this build. If `workers` is 0, the
-/// number of workers is the size of the caller's arena (tbb), omp_get_max_threads() (openmp), or the number of cores
-/// (threads). A tbb executor with 0 workers runs its tasks in the arena of the caller. Throws std::invalid_argument if
-/// this build lacks the backend or if `workers` is negative.
+/// Makes an executor of the given backend; `automatic` selects the first backend of this build. Throws
+/// std::invalid_argument if this build lacks the backend or if `workers` is negative. If `workers` is 0, the number of
+/// workers is
+/// - tbb: the size of the caller's arena, in which the tasks then run,
+/// - openmp: omp_get_max_threads(),
+/// - threads: the number of cores.
 std::unique_ptr<Executor> make_executor(Backend backend, int workers);
 
 /// The backends of this build; the first one is the default.

@@ -8,10 +8,9 @@
 
 namespace skerry {
 
-/// Calls block_result(begin, end) for blocks of at most `block` rows, concurrently, and combines the results r_0, r_1,
-/// ... in block order: combine(... combine(combine(identity, r_0), r_1) ...). The order is fixed, because the rounding
-/// of a floating-point sum depends on the order. `partial` stores the results of the blocks; its memory is reused by
-/// later calls.
+/// Calls block_result(begin, end) for blocks of at most `block` rows, concurrently, and combines the results in block
+/// order: combine(... combine(combine(identity, r_0), r_1) ...). The fixed order makes the rounding of floating-point
+/// sums reproducible. `partial`: memory for the results r_0, r_1, ..., reused by later calls.
 template <class T, class BlockResult, class Combine>
 T reduce(Executor& executor, std::size_t count, std::size_t block, Column<T>& partial,
          const std::type_identity_t<T>& identity, BlockResult&& block_result, Combine&& combine) {

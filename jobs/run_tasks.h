@@ -12,8 +12,8 @@ namespace skerry {
 int core_count();
 
 /// Calls task(0) .. task(count - 1), each once, on new threads. Their number is the lesser of `threads` and `count`,
-/// but at least 1. Tasks start in the order of their numbers. The calling thread runs no task. It calls watch() once
-/// per `period` until all tasks have returned. So watch() may call code that only the calling thread may run.
+/// but at least 1. Tasks start in the order of their numbers. Meanwhile the calling thread calls watch() once per
+/// `period`; so watch() may call code that only this thread may run.
 ///
 /// After an exception of a task or of watch() no further task starts, but running tasks are completed. Then the
 /// exception of watch() is rethrown, or else that of the task with the lowest number.

@@ -74,8 +74,8 @@ void TaskGraph::compile() {
                 throw CheckFailed(std::string("the stage ") + reader.name +
                                   " reads as a constant value the data that the stage " + writer.name + " writes");
     edges_.clear();
-    // before[s][p]: stage s waits for stage p, directly or through other stages. For each stage s, the last of its
-    // predecessors is visited first. A stage p for which another predecessor of s already waits gets no edge to s, so
+    // before[s][p]: stage s waits for stage p, directly or through other stages. The predecessors of a stage are
+    // visited from the last to the first, and p gets no edge to s if another predecessor of s already waits for p. So
     // the set of edges is minimal.
     std::vector<std::vector<bool>> before(count, std::vector<bool>(count, false));
     for (std::size_t s = 0; s < count; ++s) {
@@ -116,8 +116,8 @@ void TaskGraph::run_all(Executor& executor, Trace* trace) {
         executor.run_graph(edges, [&](Index number) { run_stage(number, Trace::now(), executor, trace); });
         return;
     }
-    // The stages run one after the other, so the end time of a stage is also the start time of the next stage. The
-    // clock is thus read only once per stage. Its reading time matters in a step of a few microseconds.
+    // The clock is read only once per stage: stages run one after the other, so the end time of one is the start time
+    // of the next. The reading time matters in a step of a few microseconds.
     Trace::Time time = Trace::now();
     executor.run_graph(edges, [&](Index number) { time = run_stage(number, time, executor, trace); });
 }

@@ -74,16 +74,16 @@ struct StageDeclaration {
     const char* phase = "";  // set by TaskGraph
 };
 
-/// Stages and the order between them. Building a graph may allocate memory. Running a graph allocates no memory after
-/// its first run on an executor. Example of a stage:
+/// Stages and the order between them. Two stages that access the same object run in the order of the list if one of
+/// them writes the object. Building a graph may allocate memory. Running a graph allocates none after its first run on
+/// an executor. Example of a stage:
 ///
 ///     g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(attachments), value(s.h),
 ///             read(n.position), write(n.velocity));
 ///
-/// The functions of stage_arguments.h make the arguments, in the order of the parameters of the stage function. If the
-/// first parameter is an Executor&, the graph passes it. Spans are made when the stage starts, because earlier stages
-/// may resize the columns. Two stages that access the same object run in the order of the list if one of them writes
-/// the object.
+/// The functions of stage_arguments.h make the arguments, in the order of the parameters of the stage function. The
+/// graph itself passes a first parameter Executor&. Spans are made when the stage starts, because earlier stages may
+/// resize the columns.
 class TaskGraph {
 public:
     struct Edge {
@@ -135,9 +135,9 @@ public:
     /// declares an object as a value and some stage writes this object.
     void compile();
 
-    /// Sets the memory range in which accesses are checked. With SKERRY_CHECK_ACCESS, a stage throws CheckFailed if it
+    /// Sets the memory range in which accesses are checked: with SKERRY_CHECK_ACCESS, a stage throws CheckFailed if it
     /// accesses a column in this range without having declared the access. `name_of` returns the name of the object at
-    /// an address, for the message of the exception.
+    /// an address, for the message.
     using NameOf = std::string (*)(void* memory, const void* place);
     void track(void* memory, std::size_t bytes, NameOf name_of) { tracked_ = {memory, bytes, name_of}; }
 

@@ -15,9 +15,9 @@ namespace skerry {
 /// Then it yields the core, because the operating system may have suspended them.
 template <class Ready>
 void Team::wait_until(Ready&& ready) const {
-    // Number of pauses before the thread yields the core; 50,000 pauses take 2 ms. A yield takes about as long, too
-    // long if the wait would last a microsecond. If there are more workers than cores, the thread yields early, because
-    // the thread for which it waits may need the core.
+    // Number of pauses before the thread yields the core. 50,000 pauses take 2 ms, about as long as a yield, which
+    // would be too long in a wait of a microsecond. With more workers than cores, the thread yields early, because the
+    // thread for which it waits may need the core.
     const int max_pauses = may_spin_ ? 50000 : 20;
     for (int i = 0; !ready(); ++i) {
         if (i < max_pauses) {

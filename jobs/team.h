@@ -16,10 +16,11 @@ namespace skerry {
 class FirstError;
 class PhaseRunner;
 
-/// One thread, the leader, hands out work; the other threads, the helpers, spin until there is work. If a helper is
-/// busy elsewhere or suspended by the operating system, the other threads do its share. A phase has an overhead of
-/// about 0.3 us. The time for a worker to join the team depends on the executor and is spent once per gather(). Later
-/// calls reuse the memory of the Team object.
+/// A group of threads for many short phases of work: the leader hands out work, the helpers spin until there is work.
+/// If a helper is busy elsewhere or suspended by the operating system, the other threads do its share.
+///
+/// A phase has an overhead of about 0.3 us. The time for a worker to join the team depends on the executor and is spent
+/// once per gather(). Later calls reuse the memory of the Team object.
 class Team {
 public:
     /// Largest number of threads in a team, leader included. All threads increment the same counter of finished blocks,
@@ -31,10 +32,12 @@ public:
     void gather(Executor& executor, FunctionRef<void()> work);
 
     /// Calls body(block) once for each block. Phase p consists of the blocks phase_offset[p] .. phase_offset[p + 1] -
-    /// 1; it starts after all blocks of earlier phases have returned. A worker begins each phase with the same share of
-    /// the blocks. If this share uses about the same rows in all phases, the rows stay in the cache of the worker.
-    /// After an exception the other blocks still run, and the exception of the lowest block is rethrown. Call
-    /// run_phases only from the leading thread. Outside of gather() all blocks run on the calling thread.
+    /// 1; it starts after all blocks of earlier phases have returned. Call run_phases only from the leading thread.
+    /// Outside of gather() all blocks run on the calling thread.
+    ///
+    /// A worker begins each phase with the same share of the blocks, for example the second quarter. If this share uses
+    /// about the same rows in all phases, the rows stay in the worker's cache. After an exception the other blocks
+    /// still run, and the exception of the lowest block is rethrown.
     void run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index block)> body);
 
     /// Runs a single phase of `count` blocks.

@@ -23,10 +23,9 @@ void require(bool good, std::string_view object, std::string_view field, Real fo
 /// Refuses a vector with a component that is not finite.
 void require_finite(std::string_view object, std::string_view field, const Vec3& found);
 
-/// Returns an error whose text is that of `inner` with `context` in front, without an object or a field that `inner`
-/// names again. The new error has the file, object, field and other parts of `inner`. If `inner` names no file, the new
-/// error gets the file of `context`, the object of `context` unless it is empty, and the field of `context` in front of
-/// the field of `inner`.
+/// Returns a copy of `inner` whose text begins with `context`, without an object or a field that `inner` names again.
+/// If `inner` names no file, the copy also gets the file of `context`, its object unless that is empty, and its field
+/// in front of the field of `inner`.
 SceneError error_at(const Complaint& context, const SceneError& inner);
 
 /// Formats a number with `digits` significant digits. Numbers from 0.0001 up to a million get no exponent.

@@ -21,10 +21,13 @@ void require_extension(const std::filesystem::path& file, std::initializer_list<
 /// streams such as pipes and terminals are accepted. Symbolic links are followed.
 void require_replaceable(const std::filesystem::path& file);
 
-/// A temporary file in the folder of `file`. commit() renames it to `file`. Other programs never see an incomplete
-/// file, and a failure leaves the old file unchanged. The new file gets the permissions of the old one. If `file` is a
-/// symbolic link, its target is replaced. Pipes and terminals are written directly. Creates the folder if needed. All
-/// functions throw SceneError that names the file and the cause.
+/// A temporary file in the folder of `file`, which commit() renames to `file`. So other programs never see an
+/// incomplete file, and a failure leaves the old file unchanged. All functions throw SceneError that names the file and
+/// the cause.
+/// - The folder is created if needed.
+/// - The new file gets the permissions of the old one.
+/// - If `file` is a symbolic link, its target is replaced.
+/// - Pipes and terminals are written directly.
 class FileReplacement {
 public:
     explicit FileReplacement(const std::filesystem::path& file);

@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-// Upper limit of the angle between the normal of a node and that of a face at this node [rad]. With a larger angle the
-// node lies on an edge or corner of the body. At an edge of a box the angle is pi/4. At nodes of a coarse ball it is
-// about half of the angle between neighbouring faces.
+// Upper limit of the angle between the normal of a node and that of a face at this node [rad]. Beyond it, the node lies
+// on an edge or corner of the body. The angle is pi/4 at an edge of a box, and at nodes of a coarse ball about half of
+// the angle between neighbouring faces.
 constexpr Real sharp = 0.7;
 // A contact counts as flat if the sum of both curvatures times the mean edge length is below this value.
 constexpr Real flat = 1e-3;

@@ -24,11 +24,11 @@ namespace skerry {
 
 namespace {
 
-/// Recovered stress at the corners of the tetrahedra of a body.
+/// Recovered stress (docs/methods/elasticity.md 7.9) at the corners of the tetrahedra of a body.
 ///
 /// At edges and corners of the surface and at interfaces of materials, World::node_stress extrapolates, or mixes
-/// materials. At these nodes this class uses the volume-weighted mean stress of the tetrahedra of one material around
-/// the node, because this mean is more robust in thin walls.
+/// materials. There, the class uses the volume-weighted mean stress of the tetrahedra of one material around the node,
+/// which is more robust in thin walls.
 class CornerStress {
 public:
     CornerStress(const BodyRecord& record, const NodeFields& nodes, std::span<const Mat3> of_tetrahedra,
@@ -96,12 +96,14 @@ Real share_of(Real error, Real energy) {
 /// Sums over the elements and tetrahedra of a body. They give, for example, the missing energy: the energy that an
 /// infinitely fine mesh would store in addition under the same loads (docs/methods/error_estimates.md 1).
 ///
-/// Smoothed elements solve for a stress s that is constant in each element, and for displacements with the strain e in
-/// the tetrahedra. This pair makes the functional of Hellinger and Reissner stationary, so the error of the functional
-/// is of second order. This error is the missing energy: the integral of 2 (S - e) : (s* - s) + (s* - s) : (S* - S)
-/// over the body, with the exact stress s* and the strains S and S* that the material law gives for s and s*. The
-/// recovered stress is used in place of the exact one. For linear tetrahedra S = e, and the missing energy is the
-/// squared norm of the error.
+/// Smoothed elements solve for a stress s, constant in each element, and for displacements with the strain e in the
+/// tetrahedra. Let s* be the exact stress, S and S* the strains that the material law gives for s and s*. The missing
+/// energy is the error of the functional of Hellinger and Reissner. The error is of second order, because s and the
+/// displacements make the functional stationary:
+///     missing energy = integral of 2 (S - e) : (s* - s) + (s* - s) : (S* - S) over the body
+///
+/// The recovered stress is used in place of s*. For linear tetrahedra S = e, and the missing energy is the squared norm
+/// of the error.
 class MeshErrorSum {
 public:
     MeshErrorSum(const Model& model, std::size_t body)
@@ -131,10 +133,12 @@ private:
         const CornerStress recovered(record_, error_.nodes, of_tetrahedra, error_.volume);
         for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
         error_.stored += sum(error_.energy);
-        // The missing energy is the energy of the exact stress minus the stored energy. The recovered stress, times a
-        // factor, is used in place of the exact one. The exact stress is in balance with the loads, so the integral of
-        // its product with the strain of the displacements is the stored energy. For the recovered stress this integral
-        // is mixed_. With the factor stored / mixed_ it is the stored energy, too.
+        // The missing energy is the energy of the exact stress minus the stored energy. The recovered stress, times the
+        // factor stored / mixed_, is used in place of the exact stress.
+        //
+        // mixed_ is the integral of the recovered stress times the strain of the displacements. For the exact stress,
+        // which is in balance with the loads, this integral is the stored energy, and the factor gives the recovered
+        // stress the same property.
         if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
         find_peak(of_tetrahedra, recovered);
         find_interpolation_error();
@@ -148,10 +152,10 @@ private:
     }
     bool is_anisotropic(std::size_t block) const { return constants_of(block).model == MaterialModel::orthotropic; }
 
-    /// Writes block_ and splits_. A block is a group of elements of one kind that are computed together. block_: for
-    /// each tetrahedron, the block of an element that covers it. Elements with the volumetric stress alone, and
-    /// inversion barriers, do not count. splits_: true for materials of which some elements carry only the volumetric
-    /// stress.
+    /// Writes block_ and splits_.
+    /// - block_: for each tetrahedron, the block (a group of elements of one kind that are computed together) of an
+    ///   element that covers it. Inversion barriers, and elements with the volumetric stress alone, do not count.
+    /// - splits_: true for materials of which some elements carry only the volumetric stress.
     void find_blocks(std::size_t tetrahedron_count) {
         block_.resize(tetrahedron_count);
         splits_.resize(norms_.size());
@@ -172,10 +176,9 @@ private:
         return *norm;
     }
 
-    /// Adds to error_.stored the energy of the elements minus the energy of their mean stresses in the tetrahedra. The
-    /// stress of a tetrahedron is made of these means. compare() later adds the energy of the stresses of the
-    /// tetrahedra (error_.energy), which makes the sum the energy of the elements. Returns false if the elements are
-    /// not strained.
+    /// Adds to error_.stored the energy of the elements minus the energy of their mean stresses in the tetrahedra.
+    /// compare() later adds error_.energy, the energy of the stresses of the tetrahedra, which consist of these means;
+    /// the sum is the energy of the elements. Returns false if the elements are not strained.
     bool add_elements(std::span<const Mat3> stress) {
         constexpr Real smallest_strain = 1e-9;  // smaller mean strains are rounding errors, for example in free fall
         struct Mean {
@@ -260,9 +263,9 @@ private:
                     .dot(total);
     }
 
-    /// Estimates the error of the largest recovered stress. The estimate is the difference between the recovered stress
-    /// and the stress of the tetrahedra, taken at their centroids, where both have errors of second order in the length
-    /// of the edges. It is a root mean square over the tetrahedra around the node with the largest stress.
+    /// Estimates the error of the largest recovered stress: the difference between recovered stress and stress of the
+    /// tetrahedra, as root mean square over the tetrahedra around the node with the largest stress. Both are taken at
+    /// centroids, where they have errors of second order in the length of the edges.
     void find_peak(std::span<const Mat3> of_tetrahedra, const CornerStress& recovered) {
         Index peak = 0;
         for (std::size_t n = 0; n < error_.nodes.stress.size(); ++n) {

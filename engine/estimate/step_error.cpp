@@ -102,9 +102,9 @@ Vec3 spin_momentum(const World& world, BodyHandle body) {
     return model.rigid_bodies.angular_momentum[static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin)];
 }
 
-/// Rate of the error of the rotation of a free rigid body [rad/s]. It is the size of the second-order terms of the
-/// splitting into rotations about the principal axes (docs/methods/rigid_bodies.md): h^2/24 |w| |dw/dt| with the step h
-/// and the angular velocity w, which changes even without torques.
+/// Rate of the error of the rotation of a free rigid body: h^2/24 |w| |dw/dt|, with the step h and the angular velocity
+/// w, which changes even without torques [rad/s]. This is the size of the second-order terms of the splitting into
+/// rotations about the principal axes (docs/methods/rigid_bodies.md 2).
 Real tumbling_error(const World& world, BodyHandle body, Real step) {
     const Model& model = model_of(world);
     const auto r = static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin);
@@ -182,10 +182,9 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
     return motion;
 }
 
-/// Estimates the position error of the rigid motion of a body [m]. Symplectic Euler treats given velocities as those of
-/// half a step before the start. This gives rigid motion a position error of half a step times the change of the
-/// velocity since the start. In a collision, an error of the position also becomes an error of the direction in which
-/// the body continues.
+/// Estimates the position error of the rigid motion of a body (docs/methods/error_estimates.md 2) [m]. Symplectic Euler
+/// treats given velocities as those of half a step before the start, so the error is half a step times the change of
+/// the velocity since the start. In a collision, a position error also turns the direction in which the body continues.
 Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
                             Motion& motion) {
     if (motion.holder) return 0;
@@ -240,9 +239,9 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     if (!implicit) {
         return (motion.phase_time_error + start_shift(world, motion.first_step)) * speed;
     }
-    // Root mean square displacement of the vibrations that began between the two samples. It is estimated as the part
-    // of the change of the displacements that the velocities at both samples do not explain: the change minus the
-    // integral of the velocities by the trapezoidal rule.
+    // Root mean square displacement of the vibrations that began between the two samples. It is estimated as the change
+    // of the displacements minus the integral of the velocities by the trapezoidal rule, that is, the part of the
+    // change that the velocities at both samples do not explain.
     const Real begun = mean_size(world, body, [&](std::size_t n) {
         return Vec3(after.displacement[n] - before.displacement[n] -
                     interval.seconds / 2 * (after.velocity[n] + before.velocity[n]));

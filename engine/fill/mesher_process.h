@@ -36,11 +36,13 @@ struct MesherResult {
 /// Exit code of a mesher whose package is not installed.
 inline constexpr int exit_missing = 3;
 
-/// Runs a mesher. Its standard input is a text: "NODES TRIANGLES LARGEST_EDGE", then lines "x y z" of the nodes and
-/// lines "a b c" of the triangles, with nodes counted from 0. The mesher writes to file descriptor 3: "NODES
-/// TETRAHEDRA", then lines "x y z" of the nodes and lines "a b c d" of the tetrahedra. No tetrahedron of the result
-/// is inverted, but some may be flat. A text that is not such a mesh counts as a failure. Throws std::system_error if
-/// no process or temporary file can be created.
+/// Runs a mesher. Throws std::system_error if no process or temporary file can be created. The mesher reads and writes
+/// text, with nodes counted from 0:
+/// - standard input: "NODES TRIANGLES LARGEST_EDGE", then lines "x y z" of the nodes and lines "a b c" of the triangles
+/// - file descriptor 3, for the result: "NODES TETRAHEDRA", then lines "x y z" of the nodes and lines "a b c d" of the
+///   tetrahedra
+///
+/// Any other result counts as a failure. No tetrahedron of the result is inverted, but some may be flat.
 MesherResult run_mesher(const SurfaceMesh& surface, Real largest_edge, const MesherCall& call);
 
 }  // namespace skerry::mesh

@@ -25,9 +25,9 @@ extern const char* const install_netgen;
 /// FillSettings::python, if it is not empty, else the environment variable SKERRY_FILL_PYTHON, else python3.
 std::string python_program(const std::string& setting);
 
-/// Fills a closed manifold surface that does not cross itself. The edges of the tetrahedra are at most about
-/// `largest_edge` long [m]. The nodes of the surface are the first nodes of the mesh, unchanged to the last bit.
-/// `doing`: text for setup.progress while Netgen runs.
+/// Fills a closed manifold surface that does not cross itself, with edges of at most about the length `largest_edge`
+/// [m]. The nodes of the surface are the first nodes of the mesh, unchanged to the last bit. `doing`: text for
+/// setup.progress while Netgen runs.
 MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
                             const std::string& doing);
 

@@ -30,9 +30,9 @@ struct Shells {
     std::size_t cavity_count() const;
 };
 
-/// Divides the cleaned surface of a report into shells. A shell inside an odd number of others is a cavity if
-/// `all_cavities` is true, or if its triangles are clockwise as seen from outside the shell. The other shells bound
-/// regions, which get the labels 1, 2, ...
+/// Divides the cleaned surface of a report into shells (triangles connected by common edges). A shell inside an odd
+/// number of others is a cavity if `all_cavities` is true, or if its triangles are clockwise as seen from outside. The
+/// other shells bound regions with the labels 1, 2, ...
 Shells shells_of(const SurfaceReport& report, bool all_cavities);
 
 /// Returns the triangles of all shells. Those of cavities are turned inside out, so that the winding number is 0 inside

@@ -72,8 +72,8 @@ const char* name_of(H5T_class_t type) {
     }
 }
 
-/// True if the file stores at least as many bytes as the values of the data set need. libhdf5 would read past the end
-/// of a compact data set that is too short. Chunked data sets may be compressed, so their size is not checked.
+/// True if the file stores at least as many bytes as the values of the data set need. Otherwise libhdf5 would read past
+/// the end of a compact data set. Chunked data sets may be compressed, so their size is not checked.
 bool all_stored(const Hdf5Handle& data, const Hdf5Handle& type, hssize_t count) {
     const Hdf5Handle creation(H5Dget_create_plist(data.id()), H5Pclose);
     const H5D_layout_t layout = H5Pget_layout(creation.id());

@@ -32,10 +32,12 @@ public:
 
 /// Passes commands from the browsers to the simulation, and snapshots from the simulation to the browsers.
 ///
-/// Each browser has its own thread, which encodes and sends frames. So a browser that hangs does not delay the others.
-/// A browser gets a new frame while at most one earlier frame is unacknowledged. Frames that it misses are not encoded.
-/// A stream is a sequence of frames for one browser. Its first frame is complete; each later one contains the
-/// differences from the frame sent before it.
+/// - Threads: each browser has its own thread, which encodes and sends frames. So a browser that hangs does not delay
+///   the others.
+/// - Streams: a stream is a sequence of frames for one browser. Its first frame is complete; each later one contains
+///   the differences from the frame sent before it.
+/// - Slow browsers: a browser gets a new frame while at most one earlier frame is unacknowledged. Frames that it misses
+///   are not encoded.
 class LiveHub {
 public:
     static constexpr std::size_t most_clients = 4;

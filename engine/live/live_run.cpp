@@ -226,8 +226,8 @@ void LiveRun::begin_run(const World& world) {
 }
 
 /// Takes a snapshot if one is due and a browser waits for one. `between_calls`: the world is between two calls of
-/// advance, so that probes can be read. Within a call, snapshots become due one interval later, so that only long calls
-/// take them.
+/// advance, so that probes can be read. Within a call, snapshots become due one interval later, so only long calls take
+/// them.
 void LiveRun::show(const World& world, bool between_calls) {
     if (!hub_.is_busy()) return;
     const Clock::time_point now = Clock::now();
@@ -309,8 +309,8 @@ void LiveRun::pace_from_now(const World& world) {
     pace_time_ = world.time();
 }
 
-/// Simulated time of a call of advance [s]: the time that passes in 1/60 s of wall time at the set rate, at most 1/60
-/// s. It is not shorter than the stable step, so that slow motion hardly changes the length of the steps.
+/// Simulated time of a call of advance [s]: the time that passes at the set rate in 1/60 s of wall time, but at least
+/// the stable step, so that slow motion hardly changes the length of the steps. The upper limit is 1/60 s.
 Real LiveRun::call_length(const World& world) const {
     if (!(state_.rate > 0)) return frame_step;
     return std::min(frame_step, std::max(state_.rate * frame_step, world.stable_step()));

@@ -82,9 +82,9 @@ bool LiveEncoder::is_outgrown(const Snapshot& snapshot) const {
     return stored > present + std::max(present, least);
 }
 
-/// Returns the 99th percentile of the positive finite values in `values_` as the upper end of a legend, so that few
-/// extreme values do not stretch the legend. For up to 100 values this is the largest. Returns 0 if there are none.
-/// Reorders `values_`, and removes values that are not positive or not finite.
+/// Returns the upper end of a legend for `values_`: the 99th percentile of the positive finite values, so that few
+/// extreme values do not stretch the legend; 0 if there are none. For up to 100 values it is the largest. Reorders
+/// `values_`, and removes values that are not positive or not finite.
 Real LiveEncoder::legend_top() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;

@@ -18,20 +18,20 @@ struct PullState {
     Real length = 0;  // distance of the pulled point from the target [m]
 };
 
-/// Drags a body by a spring without rest length from a point of its surface to a target. The stiffness is m (2 pi f)^2
-/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. A deformable body has up to 12
-/// parallel springs around the point, each with the same share of stiffness and largest force. A drag field on the
-/// whole body damps it critically: the distance of a stiff free body from the target decreases as (1 + w t) exp(-w t)
-/// with the time t and w = 2 pi f. A damper at the point would shorten the step of a fine mesh much more than springs
-/// and drag field together do (by about 3 %, for an implicit body by 25 %).
+/// Drags a body by a spring without rest length from a point of its surface to a target. With the mass m of the body,
+/// the natural frequency f = 2 Hz and w = 2 pi f, the stiffness is m w^2. The force is at most 50 times m 9.81 m/s^2.
 ///
-/// The springs and the field are objects of the world until end(). They are removed with the body. World::reset to a
-/// clone without them ends the pull.
+/// - A deformable body has up to 12 parallel springs around the point, each with the same share of stiffness and
+///   largest force.
+/// - A drag field on the whole body damps it critically: after the time t, the distance of a stiff free body from the
+///   target has decreased by the factor (1 + w t) exp(-w t).
+/// - The springs and the field are objects of the world until end(). They are removed with the body. World::reset to a
+///   clone without them ends the pull.
 class Pull {
 public:
-    /// Starts to drag a body towards `target`, at its surface point nearest to `point`. Ends the previous pull. Wakes
-    /// the body. Throws SceneError, and changes nothing, for a removed body, for coordinates beyond 1e9 m, and for an
-    /// implicit body in a world with theta < 1.
+    /// Starts to drag a body towards `target`, at its surface point nearest to `point`. Ends the previous pull, and
+    /// wakes the body. Throws SceneError, and changes nothing, for a removed body, for coordinates beyond 1e9 m, and
+    /// for an implicit body in a world with theta < 1.
     void begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target);
     /// Moves the target. Does nothing if no body is pulled. Throws SceneError for coordinates beyond 1e9 m.
     void move(World& world, const Vec3& target);

@@ -39,9 +39,9 @@ struct Snapshot {
 /// Takes snapshots of a world. Surfaces and shapes, which do not change, are copied once and shared by all snapshots.
 class SnapshotTaker {
 public:
-    /// Replaces the content of `snapshot`, and reuses its memory. FrameContent::mesh_error includes the energy. With a
-    /// lesser content, an extra pass over all elements calculates the energy. This pass is made so rarely that it takes
-    /// at most 1 % of the wall time, and the snapshots in between get the last result.
+    /// Replaces the content of `snapshot`, and reuses its memory. With FrameContent::mesh_error it includes the energy.
+    /// With lesser content, an extra pass over all elements calculates the energy, so rarely that it takes at most 1 %
+    /// of the wall time. The snapshots in between get the last result.
     void take(const World& world, FrameContent content, Snapshot& snapshot);
     /// Returns true if the time is earlier than in the last snapshot, or if a body has other numbers of nodes or
     /// triangles than in its first snapshot. The owner has then reset or replaced the world, and streams must start

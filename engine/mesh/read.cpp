@@ -99,11 +99,10 @@ bool any_overlap(const Mesh& mesh) {
     return false;
 }
 
-/// Reverses the inverted tetrahedra of a mesh, whose node numbers must be valid. Reversal is right for files of
-/// programs that list the nodes of all or some tetrahedra in the opposite order. In other faulty files a node lies in a
-/// wrong place and inverts the tetrahedra around it; after reversal, these would overlap their neighbours across faces.
-/// Therefore, if only some tetrahedra are inverted, and reversal makes any of them overlap a neighbour, all stay as
-/// they are.
+/// Reverses the inverted tetrahedra of a mesh, whose node numbers must be valid. There are two possible causes:
+/// - The program that wrote the file lists nodes in the opposite order. Reversal is then right.
+/// - A node lies in a wrong place and inverts the tetrahedra around it. Reversed, they would overlap their neighbours
+///   across faces. So if only some tetrahedra are inverted, and reversal causes an overlap, all stay as they are.
 void reverse_inverted(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)

@@ -40,10 +40,9 @@ public:
         for (const Index n : corners) on_face_[static_cast<std::size_t>(n)] = true;
         found_.insert(found_.end(), midpoints.begin(), midpoints.end());
     }
-    /// Adds the midpoint of an edge with both ends in the set, unless both ends are nodes of faces that lie in the set.
-    /// Such an edge is either a side of one of these faces, so that add_face() has added its midpoint, or it only
-    /// connects two of these faces, so that its midpoint does not belong to the set. Call add_face() for all faces
-    /// first.
+    /// Adds the midpoint of an edge with both ends in the set, unless both ends are nodes of faces in the set. A side
+    /// of such a face has its midpoint from add_face(), and an edge that only connects two such faces needs none. Call
+    /// add_face() for all faces first.
     void add_edge(std::size_t a, std::size_t b, Index midpoint) {
         if (in_set_[a] && in_set_[b] && !(on_face_[a] && on_face_[b])) found_.push_back(midpoint);
     }

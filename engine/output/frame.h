@@ -35,9 +35,9 @@ struct BodyFrame {
     std::vector<Real> node_mesh_error{};         // values by node: mean of mesh_error() over the adjacent tetrahedra
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
-    // Stretch of the fibres, and nominal stress along them [Pa], by cell. A cell without fibres has the stretch 1 and
-    // the stress 0. A cell with several families of fibres has the values of the family added last. Empty if the body
-    // has no fibres.
+    // Stretch of the fibres, and nominal stress along them [Pa], by cell. Empty if the body has no fibres. A cell
+    // without fibres has the stretch 1 and the stress 0; a cell with several families has the values of the family
+    // added last.
     std::vector<Real> fibre_stretch{}, fibre_stress{};
     // Surface that is drawn in place of `surface`; nullptr if there is none. See visual_positions and visual_values.
     const BoundVisual* visual = nullptr;
@@ -74,9 +74,11 @@ struct LineFrame {
     // Present positions [m]. Cable and spring: the anchors. Tie: the nodes that have not broken off. Hinge and slider:
     // the two ends of a displayed piece of the axis. Other joints: one point.
     std::vector<Vec3> points{};
-    // Force at each point [N]. Cable: tension of the segment that starts at the point (at the last point: of the last
-    // segment). Spring: force, positive in tension. Tie: norm of the force on the node. Joint: norm of the force on the
-    // first body.
+    // Force at each point [N]:
+    // - cable: tension of the segment that starts at the point; at the last point, of the last segment,
+    // - spring: force, positive in tension,
+    // - tie: norm of the force on the node,
+    // - joint: norm of the force on the first body.
     std::vector<Real> force{};
 
     /// True if lines connect consecutive points.

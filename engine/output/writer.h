@@ -22,9 +22,11 @@ struct RunStart {
     bool resumed() const { return frames > 0; }
 };
 
-/// One output of a run. All functions may throw. If the constructor or open() throws, the run does not start. If
-/// sample(), add_frame() or close() throws, only this output ends. The run continues unless all of its outputs have
-/// ended. The constructor must not create files, because the run may still be refused.
+/// One output of a run. All functions may throw, with these effects:
+/// - the constructor or open(): the run does not start,
+/// - sample(), add_frame() or close(): only this output ends. The run continues unless all of its outputs have ended.
+///
+/// The constructor must not create files, because the run may still be refused.
 class Writer {
 public:
     virtual ~Writer() = default;

@@ -69,10 +69,13 @@ private:
 };
 
 /// Adds the blocks of W between contacts on the same rigid body, and between contacts on the same implicit body due to
-/// its rigid motion. A touch is a node of the body in the stencil of a contact. Each pair of touches a and b
-/// contributes w_a w_b (I / m + [x_a] J^-1 [x_b]^T) to the block of their contacts. w: weight of the node in the
-/// stencil; x: arm from the centre of mass to the node, for a round body to its contact point; m: mass; J: inertia
-/// tensor; [x] v = x cross v.
+/// its rigid motion. Each pair (a, b) of entries of `weights`, which are nodes of the body at contacts, contributes
+///
+///     w_a w_b (I / m + [x_a] J^-1 [x_b]^T)
+///
+/// with the stencil weight w of the node, the mass m and inertia tensor J of the body, and the matrix [x] of the cross
+/// product: [x] v = x cross v. The arm x leads from the centre of mass to the node, for a round body to its contact
+/// point.
 void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     NodeWeightsOfGroup find(contacts);
     const auto crossing = [](const Vec3& v) {
@@ -158,10 +161,9 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = weights[a].contact, j = weights[b].contact;
-                // Contribution w_i w_j / m of one node to S_ij. In world axes the block is W_ij = S_ij I
-                // (docs/methods/contact.md 2.1); here it is rotated into the frames of both contacts, bitwise
-                // symmetric. In a diagonal block both rotations cancel. They are left out there, because they would add
-                // rounding errors.
+                // Contribution w_i w_j / m of one node to W_ij = S_ij I (docs/methods/contact.md 2.1), rotated into the
+                // frames of both contacts so that W is bitwise symmetric. In a diagonal block the rotations cancel, and
+                // are left out to avoid rounding errors.
                 const Real coupling = weights[a].weight * weights[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

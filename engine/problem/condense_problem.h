@@ -10,9 +10,11 @@
 
 namespace skerry {
 
-/// Global form of a contact problem: M v = H r + f, u = H^T v + w. M is the mass matrix, v the velocities of the
-/// bodies, r the impulses, u the relative velocities at the contacts, f the momenta that the bodies would have without
-/// contacts, and w the prescribed part of u.
+/// Global form of a contact problem: M v = H r + f, u = H^T v + w. The symbols are
+/// - M, v: mass matrix and velocities of the bodies,
+/// - H, r: contact directions and impulses,
+/// - f: momenta that the bodies would have without contacts,
+/// - u, w: relative velocities at the contacts, and the prescribed part of u.
 struct GlobalProblem {
     MatrixEntries mass;        // mass matrix M, symmetric positive definite
     MatrixEntries directions;  // matrix H of contact directions, three columns per contact
@@ -24,9 +26,10 @@ struct MassFault {
     std::string found, expected;
 };
 
-/// Computes blocks, q and freedoms of `problem`. On input problem.q must contain w. The mass matrix M is divided into
-/// independent parts (the bodies), which no entry of M connects. Each part is factorised separately, and only contacts
-/// on the same part are coupled. Blocks of W that are zero up to rounding are omitted.
+/// Computes blocks, q and freedoms of `problem`, whose q must contain w on input.
+///
+/// The mass matrix M is divided into independent parts (the bodies), which no entry of M connects. Each part is
+/// factorised separately, and couples only its own contacts. Blocks of W that are zero up to rounding are omitted.
 MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem);
 
 }  // namespace skerry

@@ -15,9 +15,9 @@ namespace skerry {
 
 namespace {
 
-/// A linear function of velocities: u = (sum over nodes of `along` . velocity) + (sum over bodies of `along` . velocity
-/// + `turn` . angular velocity). An impulse s of the row gives each node and each body the impulse s `along`, and each
-/// body also the angular impulse s `turn`.
+/// A linear function u of velocities, which is one row of a constraint matrix. It is the sum of `along` . v over nodes,
+/// plus the sum of `along` . v + `turn` . w over bodies, with the velocities v and angular velocities w. An impulse s
+/// of the row gives nodes and bodies the impulses s `along`, and bodies the angular impulses s `turn`.
 struct VelocityRow {
     struct OnNode {
         Index node;
@@ -47,7 +47,7 @@ struct VelocityRow {
 /// - velocity: the velocity of the row. The impulse of the row in the step is known.
 /// - impulse: the impulse of the row.
 /// - velocity_with_unknown_impulse: the velocity of the row. The impulse of the row in the step is not known;
-/// find_held_impulses() computes it.
+///   find_held_impulses() computes it.
 enum class KeptQuantity { velocity, impulse, velocity_with_unknown_impulse };
 
 struct EquationRow {
@@ -61,9 +61,9 @@ class Mobilities {
 public:
     explicit Mobilities(const RegionInputs& inputs) : inputs_(inputs) {}
 
-    /// Adds a term to a row: `weight` times the velocity component of a node in the direction `along`. `acts_at`: point
-    /// of the node's body at which the row acts; nullptr: the node itself. `beside`: additional lever arm, already
-    /// multiplied by the weight [m].
+    /// Adds `weight` times the velocity component of a node in the direction `along` to a row.
+    /// - `acts_at`: point of the node's body at which the row acts; nullptr: the node itself.
+    /// - `beside`: additional lever arm, already multiplied by the weight [m].
     void add_node(VelocityRow& row, Index node, Real weight, const Vec3& along, const Vec3* acts_at,
                   const Vec3& beside) const {
         const auto n = static_cast<std::size_t>(node);
@@ -90,9 +90,9 @@ public:
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
             const Real weight = stencil.weight[a];
-            // core_arm() returns the lever arm from the core of a round body (its centre or axis) to the contact
-            // point, times the sum of the weights of all nodes of the body. So it is added only once, with the first of
-            // these nodes.
+            // The lever arm from the core of a round body (its centre or axis) to the contact point is added only once,
+            // with the first node of the body, because core_arm() already multiplies it by the sum of the weights of
+            // all nodes of the body.
             const Index frame = inputs_.rigid.nodes.row(node);
             const bool is_first =
                 std::ranges::none_of(row.frames, [&](const VelocityRow::OnFrame& term) { return term.frame == frame; });
@@ -117,9 +117,9 @@ public:
             for (const auto& of_b : b.nodes) sum += of_a.along.dot(of_nodes(of_a.node, of_b.node, of_b.along));
         return sum;
     }
-    /// Calls visit(leader) for each node and frame of a row. The leader is a node that represents all nodes whose
-    /// masses are coupled with each other. These are the nodes of a rigid or implicit body, or of a cluster (nodes of
-    /// an explicit body with a common inertia matrix).
+    /// Calls visit(leader) for each node and frame of a row. The leader is the node that represents all nodes whose
+    /// masses are coupled with each other: the nodes of a rigid body, an implicit body, or a cluster (nodes of an
+    /// explicit body with a common inertia matrix).
     void for_each_leader(const VelocityRow& row, auto&& visit) const {
         for (const auto& term : row.frames) visit(leader_of_frame(term.frame));
         for (const auto& term : row.nodes) visit(leader_of_node(term.node));
@@ -200,9 +200,10 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
     }
 }
 
-/// Adds the rows of welds and slides. A weld (a tie without motion) has three rows, along the world axes. A slide (a
-/// tie with tangential motion) has one row. The direction of this row is not a unit vector, but the whole impulse
-/// vector of the tie in the step. The impulse of the row, a factor of this vector, is therefore 1.
+/// Adds the rows of the ties:
+/// - weld (a tie without motion): three rows, along the world axes,
+/// - slide (a tie with tangential motion): one row. Its direction is the whole impulse vector of the tie in the step,
+///   not a unit vector, so the impulse of the row is 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -242,15 +243,14 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
     }
 }
 
-/// In a matrix scaled to a unit diagonal, eigenvalues up to this value count as zero. If the directions of two rows
-/// differ by a small angle, the smallest eigenvalue is of the order of the square of the angle. The value belongs to an
-/// angle of 3e-4 rad: the solver's tolerance lets redundant joints drift apart by smaller angles.
+/// Largest eigenvalue of a matrix, scaled to a unit diagonal, that counts as zero. For two rows whose directions differ
+/// by a small angle, the smallest eigenvalue is about the square of the angle. The solver's tolerance lets redundant
+/// joints drift apart by less than 3e-4 rad, which gives this limit.
 constexpr Real negligible_part = 1e-7;
 
-/// A contact counts as immovable if elimination reduces its inverse mass along the normal to at most this fraction of
-/// the value without joints. The fraction is the square of an angle of 1e-3 rad (see negligible_part). It can be larger
-/// than `negligible_part` without harm: an immovable contact still acts on the other contacts, because their q includes
-/// its impulse in the step.
+/// Largest inverse mass of an immovable contact: normal component after elimination, as a fraction of that without
+/// joints. The fraction is the square of an angle of 1e-3 rad, like `negligible_part`. It may exceed `negligible_part`,
+/// because an immovable contact still acts on the others, whose q includes its impulse in the step.
 constexpr Real immovable_part = 1e-6;
 
 /// Pseudoinverse of a symmetric positive semidefinite matrix. Rows may have different units, so the matrix is first
@@ -307,9 +307,10 @@ Eigen::VectorXd impulses_of(const std::vector<EquationRow*>& equations) {
     return impulses;
 }
 
-/// Finds the impulses of the rows of the kind KeptQuantity::velocity_with_unknown_impulse from the condition that the
-/// velocities of these rows stay as before the solve. `E`: velocity change of each equation per unit impulse of each
-/// equation. `rate_by_others`: velocity changes of all equations due to contacts and known impulses.
+/// Finds the impulses of the rows of the kind velocity_with_unknown_impulse. They are the impulses with which the
+/// velocities of these rows stay as before the solve.
+/// - `E`: velocity change of each equation per unit impulse of each equation.
+/// - `rate_by_others`: velocity changes of all equations due to contacts and known impulses.
 void find_held_impulses(const Eigen::MatrixXd& E, const Eigen::VectorXd& rate_by_others,
                         const std::vector<EquationRow*>& equations) {
     std::vector<Index> held;

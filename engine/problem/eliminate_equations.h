@@ -29,22 +29,29 @@ struct StepEquations {
     std::vector<HeldDirection> held{};
 };
 
-/// Includes joints, ties and rollers in W and q of a problem, so that a solver for contacts alone can solve it. The
-/// rows (scalar equations) of joints, welds, ball ties and rollers are eliminated: with any contact impulses, these
-/// rows keep the velocities that they have after the step. With the contact impulses r* and the impulses s* of all rows
-/// in the step,
+/// Changes W and q of a contact problem so that they include joints, ties and rollers, and a solver for contacts alone
+/// can solve it (docs/methods/ties.md). The rows (scalar equations) are of two kinds:
+/// - Joints, welds, ball ties and rollers are eliminated: with any contact impulses, these rows keep the velocities
+///   that they have after the step.
+/// - Slides, cables, and motors, limits and passive forces of joint axes keep their impulses of the step.
+///
+/// The result follows from blocks of the Delassus operator, which maps impulses to velocity changes:
+/// - C: contacts and eliminated rows,
+/// - E: eliminated rows with each other,
+/// - G: contacts and all rows.
+///
+/// With the contact impulses r* and the impulses s* of all rows in the step,
 ///
 ///     W' = W - C E^-1 C^T,     q' = q + G s* + C E^-1 C^T r*.
 ///
-/// C, E and G are blocks of the Delassus operator, which maps impulses to velocity changes. C couples contacts with
-/// eliminated rows, E couples eliminated rows with each other, and G couples contacts with all rows. If r* solved the
-/// problem of the step, it also solves the new one. Rows of slides, of cables, and of motors, limits and passive forces
-/// of joint axes are not eliminated: they keep their impulses of the step.
+/// If r* solved the problem of the step, it also solves the new one.
 ///
-/// `contact`: for each contact of the problem, its row in `inputs`. `impulse`: r*, in the contact frames. Returns the
-/// indices of the contacts that impulses can no longer move along their normals. The blocks of these contacts are set
-/// to zero, and q of the other contacts includes the effect of their impulses in the step. Returns nothing if no row
-/// acts on a contact.
+/// - `contact`: for each contact of the problem, its row in `inputs`.
+/// - `impulse`: r*, in the contact frames.
+///
+/// Returns the indices of the contacts that impulses can no longer move along their normals. Their blocks are set to
+/// zero, and q of the other contacts includes the effect of their impulses in the step. Returns nothing if no row acts
+/// on a contact.
 std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equations, const RegionInputs& inputs,
                                                       std::span<const Index> contact, std::span<const Vec3> impulse,
                                                       ContactProblem& problem);

@@ -11,9 +11,11 @@
 namespace skerry {
 namespace {
 
-/// Violation of Coulomb's law by one contact with the impulse r and the relative velocity u [J]. It is the sum of two
-/// terms. r_n u_n is zero if complementarity holds in the normal direction. mu r_n |u_t| + r_t . u_t is zero if the
-/// dissipation by friction is maximal. |u_t| is the 1-norm for the friction pyramid.
+/// Violation of Coulomb's law by one contact with the impulse r and the relative velocity u [J]. It is the sum of
+/// - r_n u_n, which is zero if complementarity holds in the normal direction,
+/// - mu r_n |u_t| + r_t . u_t, which is zero if the dissipation by friction is maximal.
+///
+/// For the friction pyramid, |u_t| is the 1-norm.
 Real coulomb_gap(const Vec3& r, const Vec3& u, Real mu, Friction friction) {
     const Real slip = friction == Friction::cone ? std::hypot(u[1], u[2]) : std::abs(u[1]) + std::abs(u[2]);
     return r[0] * u[0] + mu * r[0] * slip + r[1] * u[1] + r[2] * u[2];

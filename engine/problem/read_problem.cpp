@@ -1,6 +1,6 @@
-// Reads the two forms of contact problems in FCLIB files (fclib.h of the FCLIB library). Local form: group fclib_local
-// with spacedim, the matrix W, and the vectors q and mu. Global form: group fclib_global with spacedim, the matrices M
-// and H, and the vectors f, w and mu.
+// Reads contact problems from FCLIB files (fclib.h of the FCLIB library), which have one of two forms:
+// - local: group fclib_local with spacedim, the matrix W, and the vectors q and mu,
+// - global: group fclib_global with spacedim, the matrices M and H, and the vectors f, w and mu.
 #include <algorithm>
 #include <string>
 #include <utility>

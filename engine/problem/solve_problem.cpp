@@ -60,10 +60,8 @@ struct Work {
     std::vector<Index> used;  // number of iterations that each region needed
 };
 
-/// Solves all regions. The tolerance applies to the norm of the errors of all regions together. Squares of norms add
-/// up, so a region gets a share of the tolerance proportional to the square root of its number of contacts. Errors are
-/// relative to norms of the solution, which are known only at the end. If the error is then too large, the regions
-/// continue with half the tolerance.
+/// Solves all regions. The tolerance applies to the norm of the errors of all regions together. Each region gets a
+/// share of it proportional to the square root of its number of contacts, because squares of norms add up.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
@@ -86,6 +84,7 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
             work.used[region] += method(op, limits).iterations;
         }
         if (whole.error() <= settings.tolerance) return;
+        // The error is relative to norms of the solution, which are known only now.
         limits.tolerance /= 2;
     }
 }

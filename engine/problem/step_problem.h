@@ -20,12 +20,14 @@ struct StepContacts {
     const StepEquations& equations;
 };
 
-/// Exports the contact problem that solve_regions solves. The equations of joints, ties, rollers and cables are not
-/// part of the result: eliminate_equations includes their effect in W and q. W is computed from stencils and inverse
-/// masses, in contact frames. q is the predicted relative velocity plus the bias: a velocity offset with which a gap
-/// may close within the step, and an impact rebounds. If static and dynamic friction differ, mu of the exported problem
-/// is the dynamic coefficient. Fills problem (without its name and the start of its description), impulse, contact and
-/// region of the result.
+/// Exports the contact problem that solve_regions solves, in contact frames. Fills problem (without its name and the
+/// start of its description), impulse, contact and region of the result.
+/// - W is computed from stencils and inverse masses.
+/// - q is the predicted relative velocity plus the bias: a velocity offset with which a gap may close within the step,
+///   and an impact rebounds.
+/// - mu is the dynamic coefficient if static and dynamic friction differ.
+///
+/// Equations of joints, ties, rollers and cables are not part of the result: see eliminate_equations.
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h);
 
 }  // namespace skerry

@@ -39,7 +39,7 @@ struct Restart {
 /// Reads a checkpoint. Throws SceneError if the file is not a checkpoint of a run.
 Restart read_restart(const std::filesystem::path& file, const LoadSettings& settings);
 
-/// Replaces the world of the scene by the world of a checkpoint, and makes the probes of the scene refer to it. Throws
+/// Replaces the world of the scene by the world of a checkpoint, to which the probes of the scene then refer. Throws
 /// SceneError unless both worlds have the same bodies and colliders, with equal names and with equal numbers of nodes
 /// per body. `file` is named in messages.
 void put_in_place(const std::filesystem::path& file, World world, Scene& scene);

@@ -12,10 +12,9 @@ namespace {
 // Smallest number of edges per radius of a contact area for which the mesh resolves the stress in the area. With fewer
 // edges the computed stress is that of single nodes.
 constexpr Real resolves_stress = 1;
-// Smallest number n of edges per radius of a contact area for which the duration of impacts is accepted. On a coarse
-// mesh an impact takes about 1.67 sqrt(n) times as long as by the theory of Hertz, because the stiffness of a single
-// node does not grow with the contact area. For n = 0.25 it takes 0.84 times as long. For a smaller n, impacts are too
-// short.
+// Smallest number n of edges per radius of a contact area for which the duration of impacts is accepted. An impact
+// takes about `impact_duration` * sqrt(n) times as long as by the theory of Hertz (n = 0.25: 0.84 times), because the
+// stiffness of a single node does not grow with the contact area.
 constexpr Real resolves_impacts = 0.25;
 constexpr Real impact_duration = 1.67;
 

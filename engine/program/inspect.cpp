@@ -66,9 +66,10 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
 }
 
 /// Groups the bodies by mesh, materials, elements and dynamics. `built`: world built from the plan, before its first
-/// step is planned; may be null. With a world, the result contains the dynamics of the bodies in this world, and
-/// details of their stable steps. Without a world, the dynamics of the plan are used, and the stable step of each
-/// explicit group is computed in a separate world.
+/// step is planned; may be null.
+/// - With a world, the dynamics are those of the bodies in it, and the result has details of their stable steps.
+/// - Without a world, the dynamics are those of the plan. The stable step of each explicit group is computed in a
+///   separate world.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, World* built = nullptr) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;

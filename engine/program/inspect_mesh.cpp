@@ -20,9 +20,8 @@ namespace skerry {
 
 namespace {
 
-// The stable step without the worst tetrahedra is printed if it is at least this many times the stable step of the
-// whole mesh. Otherwise, repairing these tetrahedra gains little. The step may even be shorter without them, because
-// the neighbours of removed tetrahedra lose mass.
+// The stable step without the worst tetrahedra is printed only if it is at least this many times the stable step of the
+// whole mesh. It may even be shorter than the latter, because the neighbours of removed tetrahedra lose mass.
 constexpr Real least_gain = 1.1;
 
 }  // namespace

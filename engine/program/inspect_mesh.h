@@ -15,8 +15,9 @@
 namespace skerry {
 
 /// Adds a problem if a thin part of the mesh is too stiff in bending, or if elements lock (are far too stiff in
-/// bending, because the material is nearly incompressible). `boundary`: boundary triangles of the mesh. `body_case`:
-/// materials and elements of the body.
+/// bending, because the material is nearly incompressible).
+/// - `boundary`: boundary triangles of the mesh.
+/// - `body_case`: materials and elements of the body.
 void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const BodyCase& body_case,
                    Problems& problems);
 void print_notes(const std::vector<std::string>& notes);

@@ -35,9 +35,10 @@ struct RepairedMesh {
 /// 1. Nodes whose tetrahedra are not connected by faces are split (part_fans.h).
 /// 2. The unchanged surface is filled.
 /// 3. If `tolerance` is above 0, the surface is also filled after removal of its needles and caps (very flat
-/// triangles). The removal moves the surface by at most `tolerance`, as a fraction of the diagonal of the bounding box.
-/// 4. If no new tetrahedra are better than the old ones but nodes were split, the old tetrahedra are returned with
-/// the split nodes.
+///    triangles). The removal moves the surface by at most `tolerance`, as a fraction of the diagonal of the bounding
+///    box.
+/// 4. If no new tetrahedra are better than the old ones but nodes were split, the old tetrahedra are returned with the
+///    split nodes.
 ///
 /// Errors name the mesh by `name`. `progress` is called many times a second with a description of the current activity.
 /// Throws SceneError if the boundary of the mesh is not a closed manifold, or if the mesh has several labels or

@@ -37,10 +37,8 @@ const char* const advice =
     "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps at the start";
 
 /// Simulates the frames of a run, beginning at the frame and sample that `memory` holds. An error is stored in
-/// result.status. If a run stops within a call of advance(), no new checkpoint is written, because advance() divides
-/// its duration into equal steps, and a resumed run could not reproduce the remaining steps of that call.
-///
-/// With several ranks all of them run this loop. For each sample, frame and checkpoint the world is gathered on rank 0.
+/// result.status. With several ranks all of them run this loop, and the world is gathered on rank 0 for each sample,
+/// frame and checkpoint.
 class FrameLoop {
 public:
     /// Divides the world of the scene among the ranks. `outputs`: null on ranks other than 0.
@@ -87,6 +85,8 @@ public:
             add_frame();
             const bool full_frame = length >= (1 - RunPlan::slack) * plan_.frame_step;
             const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());
+            // A run that stopped within a call of advance() gets no checkpoint: advance() divides its duration into
+            // equal steps, and a resumed run could not reproduce the remaining ones.
             if (result_.status == "ok" && due) write_checkpoint(full_frame ? frame + 1 : frame, 0);
         }
         result_.checkpoints = checkpoints_.written();

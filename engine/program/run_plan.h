@@ -13,8 +13,8 @@ namespace skerry {
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
 /// True if the interrupted run was to end within this frame, at the time `planned` [s], and the frame has another
-/// length in `run_plan`, the plan of the resumed run. The checkpoint may then be from a time within the frame, and the
-/// rest of the frame must be divided anew into calls of World::advance.
+/// length in the resumed run. The checkpoint may then lie within the frame, the rest of which must be divided anew into
+/// calls of World::advance. `run_plan`: plan of the resumed run.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

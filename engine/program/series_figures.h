@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// Figures of each column of the probes: value at the end, and smallest, largest and mean value of all samples. In the
-/// mean each sample is weighted by the time since the previous sample. Samples without a value, such as forces before
-/// the first step, do not count.
+/// Figures of each column of the probes: value at the end, and smallest, largest and mean value of all samples. Samples
+/// without a value, such as forces before the first step, do not count. The mean weights each sample by the time since
+/// the previous one.
 class SeriesFigures {
 public:
     /// Takes the first sample.

@@ -14,9 +14,10 @@ inline volatile std::sig_atomic_t caught_signal = 0;
 // because the launcher may kill the process soon; null: none
 inline std::atomic<const char*> signal_note = nullptr;
 
-/// Handles signals while the object exists. The first SIGINT or SIGTERM sets caught_signal and may print signal_note;
-/// the run then ends between two steps. Another signal of the same kind kills the process. SIGXFSZ is ignored, so that
-/// exceeding the file size limit becomes an ordinary write error.
+/// Handles signals while the object exists:
+/// - first SIGINT or SIGTERM: sets caught_signal, and may print signal_note. The run then ends between two steps.
+/// - second signal of the same kind: kills the process.
+/// - SIGXFSZ: ignored, so that exceeding the file size limit becomes an ordinary write error.
 class SignalGuard {
 public:
     SignalGuard() {

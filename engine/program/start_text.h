@@ -35,9 +35,9 @@ inline std::string into_shell_text(Real depth) {
            " closer than their contact distance: move the bodies apart, or reduce contact_distance";
 }
 
-/// A warning is given if a collider rotates by more than this angle in a step [rad]. Contacts assume that points of the
-/// surface move along straight lines within a step. At this rotation the position error of a surface point is 3 % of
-/// its distance from the axis (half the square of the rotation).
+/// A warning is given if a collider rotates by more than this angle in a step [rad]. Contacts assume that points of its
+/// surface move along straight lines within a step. For an angle a, the position error of such a point is a^2 / 2 times
+/// its distance from the axis: 3 %.
 inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {

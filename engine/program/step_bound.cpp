@@ -32,10 +32,11 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
 }
 
 /// Sorts all tetrahedra by the step that they allow, smallest first. Tetrahedra whose steps exceed the smallest one by
-/// less than 10 % are sorted by altitude instead: a badly shaped tetrahedron also shortens the steps of its neighbours,
-/// because they share nodal masses. Only by its small altitude can it be told from these neighbours.
+/// less than 10 % are sorted by altitude instead.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
+    // A badly shaped tetrahedron also shortens the steps of its neighbours, because they share nodal masses. Only by
+    // its small altitude can it be told from them.
     const Real least = about * *std::min_element(step.begin(), step.end());
     std::vector<std::pair<Real, Real>> key(step.size());
     for (std::size_t t = 0; t < key.size(); ++t)
@@ -85,16 +86,17 @@ Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
 }
 
 /// For each fraction in `fractions`, removes this fraction of the tetrahedra, the worst ones, and adds the stable step
-/// of the remaining mesh to bound.without. A fraction is removed in several rounds, because each removal changes the
-/// nodal masses and so the ranking of the remaining tetrahedra. `step`: step that each tetrahedron allows [s]. `order`:
-/// result of worst_first().
+/// of the remaining mesh to bound.without.
+/// - `step`: step that each tetrahedron allows [s].
+/// - `order`: result of worst_first().
 void find_steps_without(const Mesh& mesh, const BodyCase& body_case, std::span<const Real> step,
                         std::vector<Index> order, StepBound& bound) {
     // In a large mesh, a fraction of the tetrahedra is skipped if the longest step that they allow is less than this
     // multiple of the shortest one. Their removal would then gain little.
     constexpr Real least_ratio = 1.5;
     const bool large = mesh.tetrahedra.size() > many;
-    // number of rounds for each fraction; a large mesh takes seconds per round
+    // Number of rounds in which a fraction is removed. Each round changes the nodal masses, and so the ranking of the
+    // remaining tetrahedra. A large mesh takes seconds per round.
     const std::size_t rounds = large ? 1 : 3;
     Mesh remaining = mesh;
     std::size_t removed = 0;

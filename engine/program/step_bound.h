@@ -37,16 +37,18 @@ struct StepBound {
     // smallest one by less than 10 % are sorted by altitude.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // In a mesh of more than 100,000 tetrahedra, a fraction is left out of `without`, to save time, if all its
-    // tetrahedra allow similar steps. alike_share: largest fraction that was left out. alike_ratio: longest step that
-    // its tetrahedra allow, divided by the shortest one. Both are 0 if no fraction was left out.
+    // In a mesh of more than 100,000 tetrahedra, a fraction of them is left out of `without`, to save time, if they all
+    // allow similar steps.
+    // - alike_share: largest fraction that was left out,
+    // - alike_ratio: longest step that its tetrahedra allow, divided by the shortest one.
+    //
+    // Both are 0 if no fraction was left out.
     Real alike_share = 0;
     Real alike_ratio = 0;
 };
 
-/// Computes the stable step of a body with this mesh. With `details` it also finds the few worst tetrahedra, and the
-/// stable step of the mesh without its worst 0.1 % and 1 % of the tetrahedra. Throws SceneError if the mesh cannot be a
-/// body.
+/// Computes the stable step of a body with this mesh. Throws SceneError if the mesh cannot be a body. With `details` it
+/// also finds the few worst tetrahedra, and the stable step without the worst 0.1 % and 1 % of the tetrahedra.
 StepBound step_bound(const Mesh& mesh, const BodyCase& body_case, bool details);
 
 /// Computes the stable step, with details, of a body in an existing world. The world must not have planned or made a

@@ -14,9 +14,11 @@ namespace {
 
 // Number of steps below which a run needs no note. With a few hundred tetrahedra these steps take about a minute.
 constexpr double few_steps = 1e5;
-// A note is given if the steps would be longer by more than this factor without the stiff bodies, or without the forces
-// on a body. A tetrahedron counts as bad if its step is shorter by more than this factor than the median step of all
-// tetrahedra.
+// Factor above which a step counts as much longer than another one:
+// - A note is given if the steps would be longer by more than this factor without the stiff bodies, or without the
+//   forces on a body.
+// - A tetrahedron counts as bad if the median step of all tetrahedra is longer by more than this factor than its own
+//   step.
 constexpr Real much_longer = 4;
 // Longest step by default in a world of rigid and implicit bodies (Settings::step_size) [s].
 constexpr Real usual_step = 1.0 / 120;

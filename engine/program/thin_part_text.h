@@ -9,10 +9,14 @@
 
 namespace skerry {
 
-/// Returns a text about the thin part of a body that is stiffest in bending compared to its material. The text also
-/// counts the other parts that are too stiff, and gives a remedy. If no part is too stiff, but elements of the body
-/// lock (are far too stiff, because the material is nearly incompressible), the text names their kind. Otherwise it is
-/// empty. `boundary`: boundary triangles of the mesh.
+/// Returns a text about problems of a body in bending:
+/// - If the mesh of thin parts is too stiff compared to their material, the text describes the stiffest part, counts
+///   the others, and gives a remedy.
+/// - Otherwise, if elements lock (are far too stiff, because the material is nearly incompressible), it names their
+///   kind.
+/// - Otherwise it is empty.
+///
+/// `boundary`: boundary triangles of the mesh.
 std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const BodyCase& body_case);
 
 }  // namespace skerry

@@ -7,9 +7,8 @@
 namespace skerry {
 
 void TimeLeft::reach(double wall, double time) {
-    // Samples are dropped so that the wall time of each stored sample, except for the last one, is at least this many
-    // times that of the sample two places before it. The smaller the factor, the more accurately estimate() finds the
-    // sample at half of the wall time.
+    // Smallest ratio of the wall time of a stored sample to that of the sample two places before it; other samples are
+    // dropped. The smaller the ratio, the more accurately estimate() finds the sample at half of the wall time.
     constexpr double growth = 1.05;
     const std::size_t count = samples_.size();
     if (count > 1 && wall < growth * samples_[count - 2].wall)

@@ -5,9 +5,9 @@
 
 namespace skerry {
 
-/// Estimates the wall time that is left in a run from its pace so far. The pace changes when bodies meet or come to
-/// rest. Therefore the estimate is the geometric mean of two values: one from the mean pace, and one from the pace in
-/// the last half of the wall time.
+/// Estimates the wall time that is left in a run from its pace so far. Because the pace changes when bodies meet or
+/// come to rest, the estimate is the geometric mean of two: from the mean pace of the run, and from the pace in the
+/// last half of the wall time.
 class TimeLeft {
 public:
     /// `end`: simulated time at which the run ends [s]. `begin`: simulated time at which it begins, above 0 for a

@@ -73,9 +73,9 @@ inline nb::ndarray<nb::numpy, Real> array_of(const std::vector<Vec3>& rows) {
     return array_of(std::span<const Vec3>(rows));
 }
 
-/// Counts the calls that run without the GIL. Python must not end before these calls, because a thread that requests
-/// the GIL of an ended Python aborts the process. When Python ends, end_calls() therefore makes the calls of other
-/// threads raise SystemExit. New calls of these threads raise it, too.
+/// Counts the calls that run without the GIL (global interpreter lock). A thread that requests the GIL of an ended
+/// Python aborts the process. So before Python ends, end_calls() makes all running and new calls of other threads raise
+/// SystemExit.
 class CallScope {
 public:
     CallScope() {

@@ -15,8 +15,8 @@ namespace skerry {
 class Hash;
 
 /// Computes hashes of the cases of one scene. A case is the scene, changed by a list of assignments (assign.h). Its
-/// hash covers the changed scene and all scene and mesh files that the scene names. An unchanged hash shows that an
-/// earlier result of the case is still valid. Each file is read once.
+/// hash covers the changed scene and all scene and mesh files that the scene names, so an unchanged hash shows that an
+/// earlier result of the case is still valid.
 class CaseHasher {
 public:
     /// Throws SceneError if the scene file cannot be read.

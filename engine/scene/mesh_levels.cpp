@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Number of times that the edge length of a mesh can be doubled, and its numbers of cells halved, while these numbers
-/// stay whole. A mesh from a file or a filled surface has no such numbers; for it only the general limit applies.
+/// Number of times that the edge length of a mesh can be doubled, while its numbers of cells stay whole. Meshes without
+/// numbers of cells (files and filled surfaces) have only the general limit.
 int possible_coarsenings(const MeshEntry& mesh) {
     const auto of_cells = [](int cells) { return std::countr_zero(static_cast<unsigned>(cells)); };
     if (mesh.box) {

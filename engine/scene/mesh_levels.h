@@ -13,9 +13,9 @@ namespace skerry {
 /// is probably a typing mistake.
 inline constexpr int most_refinements = 6;
 
-/// A mesh whose refinement changes the results of a scene: the mesh of a deformable body, or a curved built-in shape of
-/// a rigid body or a collider. Level 0 is the mesh as the scene file gives it. At level n the edges are 2^-n times as
-/// long.
+/// The possible levels of a mesh whose refinement changes the results of a scene: the mesh of a deformable body, or a
+/// curved built-in shape of a rigid body or a collider. At level n the edges are 2^-n times as long as in the scene
+/// file.
 struct MeshLevels {
     Place place;                    // place of the mesh entry
     int refine = 0;                 // value of the key `refine` in the scene file
@@ -26,9 +26,9 @@ struct MeshLevels {
 
 struct SceneLevels {
     std::vector<MeshLevels> meshes{};
-    // Lowest and highest level that all meshes have; 0 if there are no meshes. A mesh file, or a surface that is filled
-    // without `edge`, has no level below 0. A surface with `edge` has such levels, but reading the scene fails if no
-    // mesher can fill the surface so coarsely.
+    // Lowest and highest level that all meshes have; 0 if there are no meshes. Meshes that cannot be coarsened, which
+    // are mesh files and surfaces filled without `edge`, have no level below 0. At such a level, reading a scene whose
+    // surface is filled with `edge` may fail, because no mesher can fill it so coarsely.
     int coarsest = 0, finest = 0;
     std::string why_not_coarser{}, why_not_finer{};  // reasons, each with the place of the mesh
 

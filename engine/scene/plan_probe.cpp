@@ -44,7 +44,7 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
         upper = upper.cwiseMax(node);
     }
     // Largest allowed distance of the point of a probe from the mesh, as a fraction of the diagonal of the bounding
-    // box. Rounding can put a point outside of the mesh, and so can the flat facets of the mesh of a round shape.
+    // box. A point of the body can be outside of its mesh by rounding, or because a round shape has flat facets.
     constexpr Real reach = 0.01;
     const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
     if (found) return *found;

@@ -63,9 +63,11 @@ std::vector<std::array<Index, 3>> surface_faces(const Mesh& mesh) {
     return surface;
 }
 
-/// First part of plan_set(), which then applies the other conditions. Returns the union of the sets that an entry
-/// names, or all nodes if it names none. If the entry has a label, returns only the tetrahedra with this label: those
-/// within the union, or within the whole mesh if the entry names no sets.
+/// Returns the parts of a mesh that the keys "set" and "label" of an entry select; plan_set() applies the other
+/// conditions.
+/// - Sets only: the union of the named sets.
+/// - With a label: the tetrahedra with this label within the union, or within the whole mesh if no sets are named.
+/// - Neither: all nodes.
 MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set;
     for (const std::string& name : entry.set.items) {

@@ -16,11 +16,11 @@ struct Sample {
     Real slip = 0;  // slip speeds of the contacts: first their sum, later their mean [m/s]
 };
 
-/// True if the contact acts on a node of the probe. The relative velocity of a contact is a weighted sum of nodal
-/// velocities: the weights of nodes of the first object are positive, and those of the second object are negative.
-/// `inside`: for each node of `body`, nonzero if the node belongs to the probe.
+/// True if the contact acts on a node of the probe. `inside`: for each node of `body`, nonzero if the node belongs to
+/// the probe.
 bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
     for (std::size_t a = 0; a < 4; ++a) {
+        // In the weighted sum of nodal velocities, weights of the first object are positive, of the second negative.
         const bool ours =
             (contact.weight[a] > 0 && contact.first == body) || (contact.weight[a] < 0 && contact.second == body);
         if (ours && inside[static_cast<std::size_t>(contact.node[a])] != 0) return true;

@@ -10,9 +10,9 @@ namespace {
 /// Adds the content of a scene and of the files that it includes. `open`: files that are being read now, from the
 /// outermost to the innermost, which has the content `json`. With this list a file that includes itself is refused.
 void read_into(SceneFile& scene, const Json& json, const Place& place, std::vector<std::filesystem::path>& open) {
-    // The content is read twice. The first reading finds the included files, whose contents are then added to `scene`.
-    // The second reading adds the own content, so that its values replace those of the included files. An outermost
-    // scene without included files is read once.
+    // The content is read twice: first to find the included files, whose contents are added to `scene`, and then to add
+    // the own content, whose values replace those of the included files. An outermost scene without included files is
+    // read once.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
     std::vector<std::string> names;

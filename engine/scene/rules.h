@@ -133,8 +133,8 @@ public:
         return *this;
     }
     /// Adds a key whose value can set all members of the object, such as the name of a material to copy. Keys are read
-    /// in the order in which they were added, so keys that are added later can replace single members. Value<Preset>
-    /// reads the value into an object of type T.
+    /// in the order in which they were added, so keys added later can replace single members. Preset: type with
+    /// Value<Preset>, which reads the value into an object of type T.
     template <class Preset>
     Rule& preset(std::string_view name, const KeyDoc& doc) {
         add_key(name, doc, 0, {read_preset<Preset>, Value<Preset>::schema});

@@ -195,12 +195,13 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
 /// Returns for each copy of a body the position of the origin of its mesh [m].
 std::vector<Vec3> positions_of(const BodyEntry& entry);
 
-/// nodes_of() returns the node numbers of a part of a body: in the order of the scene file if it lists the nodes,
-/// otherwise in ascending order. faces_of() returns the faces that the part lists, the surface triangles whose nodes
-/// are all in the part, and the surface triangles of the tetrahedra of the part. All are oriented as on the surface.
-/// Both functions throw SceneError if the entry names no part, an unknown set, or a part without nodes or faces. For an
-/// unknown set the message lists the existing sets.
+/// Node numbers of a part of a body, in the order of the scene file if it lists the nodes, otherwise in ascending
+/// order. Throws SceneError if the entry names no part, a part without nodes, or an unknown set. For an unknown set the
+/// message lists the existing sets.
 std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
+/// Faces of a part of a body, oriented as on the surface: the faces that the part lists, the surface triangles whose
+/// nodes are all in the part, and the surface triangles of the tetrahedra of the part. Throws SceneError like
+/// nodes_of(), and if the part has no faces.
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 /// Faces of a set: the listed faces, the surface triangles whose nodes are all listed, and the surface triangles of
 /// listed tetrahedra.

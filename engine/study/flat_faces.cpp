@@ -35,9 +35,9 @@ Real angle_at(Index node, const std::array<Index, 3>& triangle, std::span<const 
     return std::atan2(side(1).cross(side(2)).norm(), side(1).dot(side(2)));
 }
 
-/// For each triangle and each of its three nodes: normal of the smooth surface that the triangle approximates. It is
-/// the mean of the normals of the faces around the node, weighted by their angles there. Only faces whose normals
-/// differ by less than 40 degrees from that of the triangle count.
+/// Normals at the corners of each triangle of the smooth surface that the triangles approximate. A corner normal is the
+/// mean of the normals of the faces around the node, weighted by their angles there. Faces whose normals differ by 40
+/// degrees or more from that of the triangle are left out.
 std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
                                                 std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const Vec3> normals) {
@@ -80,9 +80,9 @@ bool is_name(const std::string& name, const BodyEntry& body, const std::string& 
 }  // namespace
 
 Real FlatBody::error() const {
-    // Relative error of the displacements, divided by the relative error of the radius. The displacement of a shell
-    // under pressure grows with the square of the radius, which gives 2. The pressure acts on the flat faces instead of
-    // the curved surface, which adds 1.
+    // Ratio of the relative error of the displacements to that of the radius. It is 2 because the displacement of a
+    // shell under pressure grows with the square of the radius, plus 1 because the pressure acts on the flat faces
+    // instead of the curved surface.
     constexpr Real errors_of_radius = 3;
     return is_held ? errors_of_radius * faces.share : 0;
 }
@@ -93,9 +93,9 @@ FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Ind
     const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes, triangles, normals);
     Real curved = 0, sum = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        // Along an edge of length L in a surface of curvature k, the normal turns by the angle k L, and the middle of
-        // the edge lies k L^2/8 below the surface. The mean of this distance over the three edges stands for the
-        // triangle. The largest k of the three edges stands for the curvature of the surface.
+        // Distance of the triangle from the smooth surface: mean over the three edges. Along an edge of length L in a
+        // surface of curvature k, the normal turns by the angle k L, and the middle of the edge lies k L^2/8 below the
+        // surface. The largest k of the edges is that of the surface.
         Real offsets = 0, curvature = 0, most = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 edge = nodes[static_cast<std::size_t>(triangles[t][(i + 1) % 3])] -

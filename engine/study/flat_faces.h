@@ -18,9 +18,9 @@ struct FlatFaces {
     Real angle = 0;  // largest angle between neighbouring faces of the curved surface [rad]
 };
 
-/// Measures the faces of a surface, which need not be closed. Where the normals of neighbouring triangles differ by
-/// more than 40 degrees, the edge between them is assumed to be an edge of the body. Only the other edges count as
-/// approximations of a curved surface.
+/// Measures the faces of a surface, which need not be closed. Edges at which the normals of the two triangles differ by
+/// more than 40 degrees are taken for edges of the body. Only the other edges count as approximations of a curved
+/// surface.
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles);
 
 /// A deformable body whose surface comes from a file. Refinement divides the flat faces of the file, but does not move

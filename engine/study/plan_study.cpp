@@ -54,8 +54,7 @@ void add_level_run(const StudiedScene& scene, int level, StudyStage stage, std::
 }
 
 /// Mean step of the implicit bodies [s]. Without explicit bodies it is the mean step of the world. Otherwise a call of
-/// advance is divided into equal implicit steps, as few as the upper limit Settings::implicit_step allows, and each of
-/// these into shorter explicit steps.
+/// advance is divided into equal implicit steps, as few as Settings::implicit_step allows.
 Real mean_implicit_step(const StudiedScene& scene, Real mean_step) {
     if (!scene.has_explicit) return mean_step;
     constexpr Real rounding = 1e-9;

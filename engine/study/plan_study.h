@@ -30,7 +30,7 @@ struct StudiedScene {
 /// Reads and builds the scene, and checks the names of the probes. Throws SceneError.
 StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySettings& settings);
 
-/// Stages of a study. The results of a stage show which runs of the next ones are needed, and how long they take.
+/// Stages of a study. The results of a stage show which runs of the next stages are needed, and how long they take.
 /// - start: the scene as it is, and the first run with a start that is perturbed by 1e-12 m.
 /// - basic: other elements, steps, tolerances and coarser meshes.
 /// - finer: meshes one level finer.
@@ -48,9 +48,9 @@ struct PlannedRun {
 /// of the scene as it is.
 std::vector<PlannedRun> plan_study(const StudiedScene& scene);
 
-/// Predicts the costs of runs with finer meshes from the runs with coarser ones. runs[i] is the run of plan[i]. From
-/// one level to the next finer one, the cost grows at most like the number of tetrahedra times the number of steps. On
-/// small meshes it grows less.
+/// Predicts the costs of runs with finer meshes from the runs with coarser ones. runs[i] is the run of plan[i]. The
+/// upper limit of the growth of the cost per level is that of the number of tetrahedra times the number of steps. On
+/// small meshes the cost grows less.
 void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, std::span<PlannedRun> plan);
 
 /// Predicted wall time of runs with these costs, in units of the cost.
@@ -58,9 +58,9 @@ double wall_time(std::vector<double> costs, int threads);
 /// True if a run is made alone with all threads: it would take longer on one thread than all remaining runs, divided
 /// equally among the threads. `total`: sum of the costs of all runs that are not made yet, with this one.
 bool gets_all_threads(double cost, double total, int threads);
-/// Leaves out runs that do not fit into the budget. The runs are taken in order. A run is left out if the chosen runs,
-/// together with it, would take longer than `budget` times the duration of the first run. Runs with an index below
-/// `first` are already made and are not left out.
+/// Leaves out runs that do not fit into the budget, which is `budget` times the duration of the first run. The runs are
+/// taken in order: a run is left out if it and the chosen runs would take longer. Runs with an index below `first` are
+/// already made and stay.
 void keep_to_budget(double budget, int threads, std::size_t first, std::span<PlannedRun> plan);
 
 /// Assignments with which `skerry run --set` runs a variant. `mean_step`: mean step of the unchanged scene [s].

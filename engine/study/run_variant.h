@@ -17,13 +17,13 @@ struct VariantJob {
 };
 
 /// Simulates a variant, with the same calls of World::advance as `skerry run`. Stores all results in `run`, except the
-/// assignments. If the scene is invalid or a step fails, the status in `run` says so. `progress`: receives the
-/// simulated part of the duration, from 0 to 1. Returns false if `stop` ended the run between two steps.
+/// assignments. If the scene is invalid or a step fails, the status in `run` says so. Returns false if `stop` ended the
+/// run between two steps. `progress`: receives the simulated part of the duration, from 0 to 1.
 bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& progress, StudyRun& run);
 
-/// Moves the nodes that no attachment holds by at most 1e-12 m. A comparison of runs then shows how much tiny
-/// differences grow. `draw`: seed of the random movements; 0 moves nothing. A rigid body moves as a whole, unless an
-/// attachment holds it.
+/// Moves the nodes that no attachment holds by at most 1e-12 m, so that a comparison of runs shows how much tiny
+/// differences grow. A rigid body moves as a whole, unless an attachment holds it. `draw`: seed of the random
+/// movements; 0 moves nothing.
 void perturb_start(int draw, World& world);
 
 }  // namespace skerry

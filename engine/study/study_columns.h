@@ -69,9 +69,12 @@ private:
     std::size_t rows_ = 0;  // number of rows that are already included in `stresses_` and `contacts_`
 };
 
-/// Sets StudyColumn::reported to true for columns that a name selects, and to false for all others. NAME selects all
-/// columns of the probe NAME. NAME.QUANTITY selects one of its columns, or all components of a vector. If `names` is
-/// empty, nothing is changed. Throws SceneError for a name that selects no column. `file`: scene file, for the message.
+/// Sets StudyColumn::reported to true for columns that a name selects, and to false for all others. If `names` is
+/// empty, nothing is changed.
+/// - NAME selects all columns of the probe NAME.
+/// - NAME.QUANTITY selects one of its columns, or all components of a vector.
+///
+/// Throws SceneError for a name that selects no column. `file`: scene file, for the message.
 void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
                             std::vector<StudyColumn>& columns);
 

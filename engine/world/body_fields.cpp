@@ -162,9 +162,9 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     kernels().element_bounds.steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
                                    step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
-        // The element steps above were computed with scalar shares of the node masses. The stable step of the body is
-        // computed with mass forms (mass_forms.h) and is longer. Therefore all element steps are multiplied by one
-        // factor, with which the shortest one becomes the stable step of the body.
+        // The element steps are multiplied by one factor, so that the shortest becomes the stable step of the body.
+        // That step is longer, because it is computed with mass forms (mass_forms.h), and the element steps with scalar
+        // shares of the node masses.
         Real shortest = infinity;
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

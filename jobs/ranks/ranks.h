@@ -31,9 +31,9 @@ public:
 
     virtual int rank() const = 0;  // number of this rank, from 0
     virtual int size() const = 0;  // number of ranks
-    /// Sends out[i] to the rank peers[i], and receives one message from the same rank into in[i]. Each of the peers
-    /// must name this rank in its own call. `peers` ascends and does not contain this rank. Not a collective function:
-    /// ranks without peers need not call it.
+    /// Sends out[i] to the rank peers[i], and receives one message from this rank into in[i]. Each peer must name this
+    /// rank in its own call. `peers` ascends and does not contain this rank. The function is not collective: ranks
+    /// without peers need not call it.
     virtual void exchange(std::span<const int> peers, std::span<const RankMessage> out, std::span<RankMessage> in) = 0;
     /// Collective. Combines the records of all ranks, which have equal sizes; afterwards each rank has the result.
     /// combine(into, from) must be associative and commutative to the last bit.

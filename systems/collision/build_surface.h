@@ -39,10 +39,9 @@ struct SurfaceRanges {
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
 
-/// Appends the surface of a new body as a copy of the surface of an earlier body with the same mesh, and returns the
-/// ranges of the new rows. `original`: ranges of the earlier surface. `offset`: row numbers of the new body minus the
-/// row numbers of the earlier body. The caller sets the differences for nodes and elements; the function sets those for
-/// triangles, edges and vertices.
+/// Appends the surface of a new body as a copy of the surface of an earlier body with the same mesh. Returns the ranges
+/// of the new rows. `original`: ranges of the earlier surface. `offset`: row numbers of the new body minus those of the
+/// earlier body; the caller sets them for nodes and elements, the function for triangles, edges and vertices.
 SurfaceRanges append_surface_copy(const SurfaceRanges& original, RowOffsets& offset, SurfaceTables& surface);
 
 }  // namespace skerry

@@ -54,8 +54,8 @@ private:
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
             // `distance` is a lower bound for all points of the edge, and no node is fast enough to close it in this
-            // step. So the contact points are not computed. The radius is subtracted, because the edge may be the axis
-            // of a capsule, whose surface is nearer than the axis.
+            // step. So the contact points are not computed. The edge may be the axis of a capsule, whose surface is
+            // nearer by the radius.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }
@@ -82,8 +82,8 @@ private:
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        // Depth of the point contact.point.at behind the face [m]. The point is a corner, a rim point, or the centre of
-        // a sphere or of an end of a capsule. contact.distance is smaller than its height above the face by the radius.
+        // Depth behind the face of the point contact.point.at: a corner, a rim point, or the centre of a sphere or of
+        // an end of a capsule [m]. contact.distance is its height above the face, minus the radius.
         const Real depth = -(contact.distance + contact.point.radius);
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;
@@ -92,9 +92,10 @@ private:
             {point, -(motion_.rotation * contact.normal), contact.distance, scale.contact_distance, velocity});
     }
 
-    /// True if the collider point has entered the body through the face of candidate c. False in three cases: the point
-    /// is deeper than face_depth and may have come from the other side of a thin part; another face is nearer; the
-    /// point is outside the body, in a fold of its surface.
+    /// True if the collider point has entered the body through the face of candidate c. False in three cases:
+    /// - The point is deeper than face_depth and may have come from the other side of a thin part.
+    /// - Another face is nearer.
+    /// - The point is outside the body, in a fold of its surface.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale.face_depth &&
                is_nearest(c, depth,

@@ -15,9 +15,9 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// Tests one candidate for a crossing in this step. `least`: smallest relative motion of body and collider with
-    /// which the feature can touch the collider [m]. Contacts at the nodes of the feature do not count, because nodes
-    /// are candidates of their own. Returns true if a full test was needed.
+    /// Tests one candidate for a crossing in this step. Returns true if a full test was needed. `least`: smallest
+    /// relative motion of body and collider with which the feature can touch the collider between its nodes, which are
+    /// candidates of their own [m].
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);

@@ -23,9 +23,9 @@ PairData::PairData(const CollisionInputs& all_inputs, const PairTable& pairs, In
 
 namespace {
 
-/// Velocity of the collider of a pair at the contact point in the middle of the step [m/s]. By then the contact point
-/// has moved for half a step with the nodes of the contact. The normal velocity is left as at the start of the step:
-/// its error does not add up, because the stage find_contacts measures the gap anew in every step.
+/// Velocity of the collider of a pair at the contact point in the middle of the step, when the point has moved for half
+/// a step with the nodes of the contact [m/s]. The normal velocity is left as at the start of the step: its error does
+/// not add up, because find_contacts measures the gap anew in every step.
 Vec3 midpoint_surface_velocity(const PairData& pair, const Stencil& stencil, const ContactGeometry& geometry, Real h) {
     if (pair.kind != PairKind::collider) return geometry.surface_velocity;
     const RigidMotion& motion = pair.inputs.collider.motion[pair.second];

@@ -70,9 +70,9 @@ Stencil stencil_of_point(const std::array<Index, 4>& node, const std::array<Real
 /// solved together (RegionTable).
 Stencil stencil_of_edges(const std::array<Index, 4>& node, const SegmentSegment& closest);
 
-/// Merges the rows of all blocks and the rows `more` into `merged`, in key order. The concatenated rows of the blocks
-/// must be in key order, and so must `more`. If a block and `more` contain rows with the same key, only one of the two
-/// rows is used: the row of the block if `prefer_blocks` is true, else the row in `more`.
+/// Merges the rows of all blocks and the rows `more` into `merged`, in key order. Both the concatenated rows of the
+/// blocks and `more` must be in key order. If a block and `more` have rows with the same key, only the row of the block
+/// is used if `prefer_blocks` is true, else only that in `more`.
 void merge_rows(const std::vector<Column<ContactRow>>& blocks, const Column<ContactRow>& more, bool prefer_blocks,
                 Column<ContactRow>& merged);
 

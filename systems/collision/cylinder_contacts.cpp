@@ -14,9 +14,8 @@ namespace skerry {
 
 namespace {
 
-// Lower bound of the ratio between the greatest displacement of a rim node of a cylinder and the greatest displacement
-// of any rim point. The travel of a body is measured at its nodes only, but a rim point between two nodes can move
-// further than both nodes.
+// Lower bound of the ratio between the greatest displacement of a rim node of a cylinder and that of any rim point. The
+// travel of a body is measured at its nodes only, but a rim point between two nodes can move further than both.
 constexpr Real rim_node_fraction = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
@@ -63,8 +62,8 @@ private:
         return distance <= near_surface();
     }
     /// Tests whether `bound`, a lower bound of the distance, already shows that candidate c has no contact in this
-    /// step. If so, stores asleep_until with this bound and returns true. Otherwise returns false: the caller must
-    /// compute the contact points, and store asleep_until with the sharper bound that follows from them.
+    /// step. If so, stores asleep_until with it and returns true. Otherwise the caller must compute the contact points,
+    /// and store asleep_until with their sharper bound.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !store_distance(c, bound); }
     Real near_surface() const { return contact_limit - scale.radii; }
 
@@ -109,10 +108,11 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // An edge is nearly flat if its faces have almost the same normal. The faces then support the cylinder, and
-            // a contact at the edge would act as a bump, for example if the edge is parallel to a rolling cylinder and
-            // ahead of it. So a nearly flat edge makes a contact in two cases only: with an end of the cylinder, or
-            // where it crosses the curved side and is perpendicular to the contact normal.
+            // A nearly flat edge, whose faces have almost the same normal, makes a contact in two cases only: with an
+            // end of the cylinder, or where it crosses the curved side and is perpendicular to the contact normal.
+            //
+            // Elsewhere the faces support the cylinder. A contact at the edge would act as a bump, for example if the
+            // edge is parallel to a rolling cylinder and ahead of it.
             const CylinderRegion region = nearest_region(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =

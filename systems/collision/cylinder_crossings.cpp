@@ -17,11 +17,10 @@ namespace skerry {
 
 namespace {
 
-// Lowest values of the `number` (feature_of_touch) of a crossing, above the numbers that find_cylinder_contacts uses.
-// crossing_of_triangle: first of eight numbers for a triangle, which are three for its corners, three for its edges and
-// two for the rims of the cylinder. crossing_of_shape: number of the first contact point with another shape at the end
-// of the step; one number for each further point follows. crossing_during_step: number of the first contact with
-// another shape during the step.
+// Lowest values of the `number` (feature_of_touch) of a crossing, above the numbers that find_cylinder_contacts uses:
+// - crossing_of_triangle: eight numbers for a triangle: three corners, three edges, two rims of the cylinder
+// - crossing_of_shape: one number for each contact point with another shape at the end of the step
+// - crossing_during_step: first contact with another shape during the step
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::capacity,
                 crossing_during_step = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::capacity <= touches_of_shape);
@@ -120,10 +119,9 @@ private:
         return true;
     }
 
-    /// If the shapes overlap at any contact point at the end of the step, adds contacts and returns true. Added are all
-    /// contact points whose distance at the end of the step is below the shell distance (PairScale::shell). With
-    /// contacts at the overlapping points only, the cylinder would rotate about these and overlap at the other points
-    /// in the next attempt.
+    /// Adds contacts and returns true if the shapes overlap at any contact point at the end of the step. All contact
+    /// points nearer than the shell distance (PairScale::shell) are added: with the overlapping ones only, the cylinder
+    /// would rotate about these and overlap at the others in the next attempt.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -251,11 +249,6 @@ private:
     /// Appends a crossing. `arm`: vector from the centre of the cylinder to the contact point at the start of the step
     /// [m]. `along` and `end_distance`: distances between the surfaces at the contact point at the start and at the end
     /// of the step [m].
-    ///
-    /// The contact prevents the crossing only if its point moves on a straight path. If the cylinder rotates, the
-    /// surfaces may still overlap at the end of the step (end_distance < 0), although an earlier attempt at the step
-    /// already had this contact. The distance of the contact is then reduced by this overlap, so that the contact
-    /// pushes further.
     void add_crossing(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm,
                       const Vec3& normal, Real along, const Vec3& surface_velocity, Real end_distance = 0) {
         const auto row_at = [&](Real distance) {
@@ -268,6 +261,9 @@ private:
         // the shapes have rotated by more than a right angle in between, `along` can be negative although nothing
         // overlapped at the start.
         ContactRow row = row_at(std::max(along, Real(0)));
+        // A contact prevents the crossing only if its point moves on a straight path. If the cylinder rotates, the
+        // surfaces may overlap at the end although an earlier attempt at the step already had this contact. Its
+        // distance is then reduced by this overlap, so that it pushes further.
         if (end_distance < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
             if (before != known_.end() && before->key == row.key)
@@ -277,9 +273,11 @@ private:
     }
 
     /// Distances at which the test counts a feature as crossing. `radius`: radius of the sphere or capsule whose core
-    /// (centre or axis) is the feature, else 0. With a shell distance, the gap must become smaller than a tenth of it
-    /// (contact_slack). A feature that a contact stops at the shell distance therefore does not count. Without a shell
-    /// distance, first_touch() uses a tenth of the distance at the start of the step.
+    /// (centre or axis) is the feature, else 0 [m].
+    ///
+    /// With a shell distance, the gap must fall below a tenth of it (contact_slack), so that a feature that a contact
+    /// stops at the shell distance does not count. Otherwise first_touch() takes a tenth of the distance at the start
+    /// of the step.
     ContactThreshold threshold(Real radius) const {
         return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity};
     }

@@ -303,11 +303,13 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Requests that measure_displacement resets the displacements of the bodies in expired pairs to zero. A list is valid
-/// for the travel m - 2 d (contact_reach.h), with the margin m and the displacement d at the time of the search. With d
-/// = 0, new lists are thus valid for longer. Bodies with a small d are left out, because they would gain little.
+/// Requests that measure_displacement resets the displacements of the bodies in expired pairs to zero, so that new
+/// lists are valid for longer. With the margin m and the displacement d at the time of the search, a list is valid for
+/// the travel m - 2 d (contact_reach.h).
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
+    // Bodies are left out if twice their displacement is at most this fraction of the margin, because they would gain
+    // little.
     constexpr Real rebase_fraction = 0.25;
     memory.rebase.resize(inputs.body.slot.size());
     const auto request = [&](Index b, Real skin) {

@@ -8,19 +8,19 @@
 
 namespace skerry {
 
-/// Updates the list of pairs and the candidate list of each pair. If no list has expired, the call takes only one
-/// comparison per body, collider and pair, and returns false.
+/// Updates the list of pairs, and the candidate list (features near each other) of each pair. If no list has expired,
+/// the call takes only one comparison per body, collider and pair, and returns false.
 ///
 /// If a body or collider has travelled up to its limit (SearchState), a broad search lists all pairs again. For each
 /// pair with an expired candidate list, the trees of its bodies are refitted to the present node positions and
 /// traversed, in parallel over the pairs. `box`: boxes of BvhTable, which this function refits.
 ///
-/// The limits of travel (contact_reach.h) require that BodyTable::travel bounds the motion of every node since the body
-/// was added, and that BodyTable::max_speed and frame_speed are the greatest node speeds of the last step. A body
-/// without such bounds (new, or moved by the user) is marked as forgotten (SearchState). In every attempt at the next
-/// step, its pairs are then found and searched again, with bounds from its present velocities.
+/// BodyTable::travel must bound the motion of every node since the body was added; max_speed and frame_speed must be
+/// the greatest node speeds of the last step. A body without such bounds (new, or moved by the user) is marked as
+/// forgotten (SearchState): in every attempt at the next step, its pairs are found and searched again, with its present
+/// velocities.
 ///
-/// The result is deterministic: pairs are in key order, candidates in feature order.
+/// Pairs are in key order, candidates in feature order.
 bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<Aabb> box, SearchState& search, PairTable& pairs);
 

@@ -17,12 +17,15 @@ namespace skerry {
 
 namespace {
 
-// Amounts of work; the unit is the test of one candidate of two surfaces. candidates_per_block: work of one block. A
-// block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all must be tested.
-// work_of_pair: work per pair, independent of its candidates. work_of_collider_candidate: work per candidate of a body
-// and a collider; it is more than 1, because only candidates of two surfaces are tested in groups of eight.
+// Amounts of work; the unit is the test of one candidate of two surfaces.
+//
+// Work of one block. A block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if
+// all must be tested.
 constexpr std::int64_t candidates_per_block = 1536;
+// work per pair, independent of its candidates
 constexpr Index work_of_pair = 16;
+// work per candidate of a body and a collider; above 1, because only candidates of two surfaces are tested in groups of
+// eight
 constexpr Index work_of_collider_candidate = 5;
 
 constexpr std::size_t contacts_per_block = 256;
@@ -50,9 +53,11 @@ std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + work_of_pair;
 }
 
-/// Marks pairs as idle if neither partner moves. Idle pairs are not tested: their last contacts remain valid, because
-/// bodies are only put to sleep in equilibrium. Counts the candidates of all other pairs. Adds up the work of testing
-/// them for each group of counted_pairs_per_block consecutive pairs.
+/// Prepares the division of the work into blocks:
+/// - Marks pairs as idle if neither partner moves. They are not tested: their last contacts remain valid, because
+///   bodies are only put to sleep in equilibrium.
+/// - Counts the candidates of all other pairs.
+/// - Adds up the work of testing them for each group of counted_pairs_per_block consecutive pairs.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.test_count.resize(pairs.size());
@@ -70,9 +75,10 @@ void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pai
     });
 }
 
-/// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work, and writes the
-/// start of each block and the end of the last one to pairs.block. Replaces the work of each group of pairs (mark_idle)
-/// by the sum over the groups before it. Returns the number of blocks.
+/// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work. Returns the
+/// number of blocks.
+/// - pairs.block receives the start of each block and the end of the last one.
+/// - pairs.work: the work of each group of pairs (mark_idle) is replaced by the sum over the groups before it.
 Index cut_blocks(Executor& executor, PairTable& pairs) {
     std::int64_t total = 0;
     for (std::int64_t& work : pairs.work) total += std::exchange(work, total);

@@ -173,10 +173,9 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
     return near.subspan(first, next - first);
 }
 
-/// Tests the candidates of one block for crossings. Candidates of two surfaces are taken from the list of near
-/// candidates (PairTable::near), unless `use_budgets` is false or the pair moves further than find_contacts assumed;
-/// then all candidates are tested. `known`: crossings found by earlier attempts at this step. Returns the number of
-/// tested candidates.
+/// Tests the candidates of one block for crossings, and returns the number of tested candidates. For two surfaces, only
+/// near candidates (PairTable::near) are tested, unless `use_budgets` is false or the pair moves further than
+/// find_contacts assumed. `known`: crossings found by earlier attempts at this step.
 std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const StepMotion& motion,
                          const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
                          Column<ContactRow>& found) {
@@ -212,17 +211,17 @@ std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const 
 bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion, Index p,
                     PairTable& pairs) {
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
-    // A candidate list is valid up to the travel T - 2 d0 + m. T is the travel and d0 the displacement at the time of
-    // the search, and m is the margin of the search. If the list was made from the positions of this step, nothing has
-    // moved since the search. The list is then valid up to T + m, so 2 d0 is added.
+    // A candidate list is valid up to the travel T - 2 d0 + m, with the travel T and the displacement d0 at the search,
+    // and its margin m. If the list was made from the positions of this step, nothing has moved since then. It is valid
+    // up to T + m, so 2 d0 is added.
     const Real drifted =
         pairs.rebuilt[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion self_motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    // If PairTable::travel_bound has reached valid_until, find_candidates has kept the list for another reason
-    // (is_valid): the spare distances of its pairs of leaves (self_motion.h) exceed the motion that follows from the
-    // present velocities. The spare distances then suffice if the nodes move as these velocities predict.
+    // Beyond valid_until, find_candidates keeps a list only if the spare distances of its pairs of leaves
+    // (self_motion.h) exceed the motion that follows from the present velocities (is_valid). They suffice if the nodes
+    // have moved as these velocities predict.
     const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(self_motion, motion);
     return !within_reach && !holds_for_motion(self_motion, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
@@ -240,8 +239,10 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Co
 }
 
 /// Requests longer candidate lists for the pairs that move further than their lists allow. Returns the number of
-/// requests. `not_extended` counts the pairs for which no list is requested, because one of these is true: their list
-/// was already made in this step for a motion at least as long; the motion is not finite; `allowed` is false.
+/// requests. `not_extended` counts the pairs without a request:
+/// - `allowed` is false;
+/// - the motion is not finite; or
+/// - the list was already made in this step for a motion at least as long.
 Index extend_lists(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
                    bool allowed, PairTable& pairs, Index& not_extended) {
     Index count = 0;

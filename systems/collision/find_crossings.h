@@ -9,22 +9,19 @@
 namespace skerry {
 
 /// Finds features that would pass through each other while every node moves by h (velocity_next + push_out). Returns
-/// zero if the step may be committed. Otherwise returns the number of crossings plus the number of pairs that move
-/// further than their candidate lists are valid for. Runs in parallel over the blocks of find_contacts.
+/// zero if the step may be committed, otherwise the number of crossings plus the number of pairs that move further than
+/// their candidate lists are valid for. Runs in parallel over the blocks of find_contacts.
 ///
-/// Tests only pairs with a positive contact distance, and pairs of surfaces only if these are known to be apart.
-/// Without a contact distance, surfaces may touch, and a touch cannot be distinguished from a crossing.
-///
-/// Slow candidates are skipped. The relative motion of a pair in this step is compared with the least distance of all
-/// candidates of the pair in one block. If the motion is at most half of this distance, all of these candidates are
-/// skipped. Else a single candidate is skipped if the motion is at most half of its own distance. A slow scene thus
-/// takes one comparison per pair and block. BodyTable::frame_speed must have been measured for the motion h
-/// (velocity_next + push_out).
-///
-/// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
-/// features meet. If a pair moves further than its candidate list is valid for, and extends_lists is set, no features
-/// are tested. Instead beyond_lists is set, and the attempt must be repeated with new lists from find_candidates. In
-/// the last attempt (last_attempt) crossings are permitted, and the function returns zero.
+/// - Only pairs with a positive contact distance are tested, and pairs of surfaces only if these are known to be apart.
+///   Without a contact distance, a touch cannot be distinguished from a crossing.
+/// - Slow candidates are skipped: all candidates of a pair in one block if the relative motion of the pair is at most
+///   half of their least distance, else each candidate for which it is at most half of its own distance.
+///   BodyTable::frame_speed must have been measured for the motion h (velocity_next + push_out).
+/// - Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
+///   features meet.
+/// - If a pair moves further than its candidate list is valid for, and extends_lists is set, no features are tested.
+///   Instead beyond_lists is set; the attempt must be repeated with new lists from find_candidates.
+/// - In the last attempt (last_attempt) crossings are permitted, and the function returns zero.
 Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
                      CrossingTable& crossings);

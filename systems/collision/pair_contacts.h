@@ -1,6 +1,6 @@
-// Contact tests of the candidates of one pair in one step. A candidate whose gap may close within the step of length h
-// becomes a contact; contacts are appended in candidate order. The tests also write asleep_until: the value of the
-// pair's travel bound (contact_reach.h) below which the candidate needs no further test.
+// Contact tests of the candidates of one pair in one step. A candidate is two features near each other; it becomes a
+// contact if its gap may close within the step of length h. The tests also write asleep_until: while the travel bound
+// of the pair (contact_reach.h) is below this value, the candidate needs no test.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,11 @@
 namespace skerry {
 
 /// Tests the candidates in `range` of the list of pair p, a body and an analytic collider. If use_budgets is set,
-/// candidates that cannot touch in this step are skipped. Returns a lower bound of the distances of the tested features
-/// from the collider [m]. Exception: an edge or face in a flat region of the collider (flat_region) can touch only at
-/// its nodes, which are candidates of their own. In place of its distance, the distance that it can move within this
-/// region (flat_reach) is used if it is larger.
+/// candidates that cannot touch in this step are skipped.
+///
+/// Returns a lower bound of the distances of the tested features from the collider [m]. Exception: an edge or face in a
+/// flat region of the collider (flat_region) can touch only at its nodes, which are candidates of their own. If the
+/// distance that it can move within this region (flat_reach) is larger, this distance counts instead.
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
@@ -109,10 +110,11 @@ struct PairContacts : PairData {
             }
     }
 
-    /// True if no other candidate triangle is nearer to the point of candidate c than the triangle of c. `depth`:
-    /// distance between this point and the triangle of c [m]. `squared(i)`: squared distance from the point to the
-    /// triangle of candidate i [m^2]. Only candidates are compared, because all triangles within `depth` of the point
-    /// are candidates.
+    /// True if no triangle is nearer to the point of candidate c than the triangle of c. Only other candidates with
+    /// this point are compared, because all triangles within `depth` of the point are candidates.
+    ///
+    /// `depth`: distance between the point and the triangle of c [m]. `squared(i)`: squared distance from the point to
+    /// the triangle of candidate i [m^2].
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });

@@ -12,10 +12,10 @@
 
 namespace skerry {
 
-/// Tests the candidates in `range` of pair p, a body and an analytic collider. `travel_bound`: upper bound of the
-/// travel of the pair at the end of this step [m]. Candidates with a larger asleep_until are skipped, because their
-/// features cannot meet. Features that would cross are appended to `found` as contacts. Returns the number of tested
-/// candidates.
+/// Tests the candidates in `range` of pair p, a body and an analytic collider, and appends features that would cross in
+/// this step to `found` as contacts. Returns the number of tested candidates. Candidates whose asleep_until is above
+/// `travel_bound` are skipped, because they cannot meet. `travel_bound`: upper bound of the travel of the pair
+/// (contact_reach.h) at the end of this step [m].
 std::uint64_t find_collider_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, Column<ContactRow>& found);
 
@@ -25,12 +25,13 @@ std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepM
                                       Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
                                       Column<ContactRow>& found);
 
-/// Calls test(c) for each candidate c in a range whose asleep_until is at most `travel_bound`, the upper bound of the
-/// travel of the pair at the end of this step [m]. The features of all other candidates cannot meet. test(c) returns
-/// false if a bound on the motion already excludes a crossing. The result is the number of calls that returned true.
+/// Calls test(c) for each candidate c in a range whose features may meet in this step, and returns the number of calls
+/// that returned true. test(c) returns false if a bound on the motion already excludes a crossing. `travel_bound`:
+/// upper bound of the travel of the pair (contact_reach.h) at the end of this step [m].
 std::uint64_t count_tested(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& test) {
     std::uint64_t tested = 0;
     for (Index c = range.begin; c < range.end; ++c)
+        // Candidates with a larger asleep_until cannot meet.
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) tested += test(c);
     return tested;
 }

@@ -76,8 +76,8 @@ private:
     }
 
     /// True if a point behind a triangle has entered the body through this triangle, so that it must be pushed out
-    /// there. This is the case if no other triangle of the body is nearer to the point. If one is nearer, the point has
-    /// entered through that triangle, or it is in front of that triangle and thus outside a thin part of the body.
+    /// there: no other triangle of the body is nearer. Otherwise the point has entered through the nearer triangle, or
+    /// is in front of it, outside a thin part of the body.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
         // In self-contact, a point that was near the triangle in the rest shape may be on the other side of a thin part
         // of the body.
@@ -90,13 +90,13 @@ private:
         });
     }
 
-    /// True if `candidate`, a point and the core (axis or centre) of a round body, makes a contact. Several candidates
-    /// can describe one contact, and only one of them makes it.
-    ///
-    /// A point on a mesh makes a contact only if it is nearest to a point between the ends of the axis. At an end, the
-    /// candidate of this end and a face of the mesh makes the contact. If the ends of two axes are nearest to each
-    /// other, each end is a candidate with the other axis; the end on the first body makes the contact. The centre of a
-    /// sphere is the only candidate with an axis, so it always makes the contact.
+    /// True if `candidate`, a point and the core (axis or centre) of a round body, makes a contact. Of several
+    /// candidates that describe one contact, only one makes it:
+    /// - A point on a mesh counts only between the ends of the axis. At an end, the candidate of this end and a face of
+    ///   the mesh makes the contact.
+    /// - If the ends of two axes are nearest to each other, each end is a candidate with the other axis; the end on the
+    ///   first body makes the contact.
+    /// - The centre of a sphere always counts, because it is the only candidate with an axis.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;
@@ -110,10 +110,12 @@ private:
                                      inputs.position[b] - inputs.position[a], scale);
     }
 
-    /// `target`: point on the surface of the other body, behind which the core (axis or centre) of a round body lies.
-    /// True if no face of the other body lies between the core and `target`. The elements at `target` are then
-    /// inverted, and the round body touches `target` from behind. This test replaces is_truly_behind for round bodies,
-    /// which touch many faces at once: a nearer face does not exclude a contact with a further one.
+    /// True if no face of the other body lies between the core (axis or centre) of a round body and `target`, the
+    /// surface point of the other body that the core is behind. The round body then touches inverted elements from
+    /// behind.
+    ///
+    /// This test replaces is_truly_behind for round bodies. They touch many faces at once, so a nearer face does not
+    /// exclude a contact with a further one.
     bool is_in_sight(Index c, Index core, const Vec3& target) const {
         const Vec3& start = inputs.position[core];
         const Vec3 end = start + (1 - sight_slack) * (target - start);

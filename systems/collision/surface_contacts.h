@@ -13,10 +13,12 @@
 namespace skerry {
 
 /// Tests the candidates of pairs of surfaces. Most pairs have few candidates, so the candidates of several pairs are
-/// collected, and their distances are computed eight at a time. A candidate whose gap (distance minus contact distance)
-/// may close within the step of length h is appended to `found` as a contact, in list order. A candidate whose features
-/// could meet within the step is appended to `near`, for find_crossings. For each tested candidate, asleep_until
-/// receives the value of PairTable::travel_bound below which the candidate needs no further test (contact_reach.h).
+/// collected, and their distances are computed eight at a time. The tests write, in list order:
+/// - `found`: contacts, for candidates whose gap (distance minus contact distance) may close within the step of length
+///   h;
+/// - `near`: candidates whose features could meet within the step, for find_crossings;
+/// - asleep_until: for each tested candidate, the value of PairTable::travel_bound below which it needs no further test
+///   (contact_reach.h).
 class SurfaceContacts {
 public:
     SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,

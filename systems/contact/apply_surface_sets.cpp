@@ -133,9 +133,9 @@ private:
         return {tangent / length, sets_.across[touched.set]};
     }
 
-    /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of
-    /// mapped_to_present(), the mapped direction on one face, over the faces at the feature that are in the set. If
-    /// this sum is zero, it is the sum over all faces at the feature.
+    /// Direction of the feature's set, mapped to the present shape; its length is arbitrary. It is the sum of the
+    /// directions on the faces at the feature that are in the set (mapped_to_present), or on all faces at the feature
+    /// if that sum is zero.
     Vec3 present_direction(const Feature& touched) const {
         for (const bool in_set : {true, false}) {
             Vec3 sum = Vec3::Zero();

@@ -16,12 +16,13 @@ struct FrictionShape {
     Real across = 1;
 };
 
-/// Friction between two surfaces whose friction depends on the direction. Its tensor is the geometric mean of the
-/// friction tensors A, B of the surfaces, each with the eigenvalues 1 and `across`. For 2x2 matrices, with a = sqrt(det
-/// A), b = sqrt(det B) and G = A/a + B/b, the mean is sqrt(a b) G / sqrt(det G) (Ando, Li and Mathias 2004). `scale`:
-/// larger eigenvalue of the mean. The friction coefficients along `axis` are those of isotropic friction times `scale`.
+/// Friction between two surfaces whose friction depends on the direction (docs/methods/friction.md 4.2). Its tensor
+/// is the geometric mean of the friction tensors A, B of the surfaces, each with the eigenvalues 1 and `across`. With
+/// a = sqrt(det A), b = sqrt(det B) and G = A/a + B/b, the mean of two 2x2 matrices is sqrt(a b) G / sqrt(det G) (Ando,
+/// Li and Mathias 2004).
 struct MeanShape {
     FrictionAxis axis;
+    // larger eigenvalue of the mean: the coefficients along `axis` are those of isotropic friction times `scale`
     Real scale = 1;
 };
 MeanShape mean_shape(const FrictionShape& first, const FrictionShape& second, const Vec3& normal);

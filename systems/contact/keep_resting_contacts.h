@@ -40,10 +40,10 @@ struct RestingMemory {
     RestingContactTable next;
 };
 
-/// Updates the stored contacts between sleeping bodies after a step. `kick`: time for which forces acted in this step
-/// [s]. Contacts of this step are stored if both partners are asleep or do not move. Contacts that are already stored
-/// remain if their pair is idle (RestingInputs::idle). Returns false if nothing changes. This check takes one pass over
-/// the contacts and one over the pairs.
+/// Updates the stored contacts between sleeping bodies after a step, and returns false if nothing changes. This check
+/// takes one pass over the contacts and one over the pairs. `kick`: time for which forces acted in this step [s].
+/// - Contacts of this step are stored if both partners are asleep or do not move.
+/// - Contacts that are already stored remain if their pair is idle (RestingInputs::idle).
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 

@@ -8,8 +8,8 @@
 namespace skerry {
 namespace {
 
-// `min_shift`: the smallest block has 2^min_shift contacts. Their processing takes a few microseconds, about as long as
-// the start of a worker. `max_blocks`: upper limit of the number of blocks. It is small, because BlockTable has an
+// Limits of the division into blocks. A block has at least 2^min_shift contacts, whose processing takes a few
+// microseconds, about as long as the start of a worker. There are at most max_blocks blocks, because BlockTable has an
 // entry for each pair of blocks.
 constexpr std::size_t min_shift = 7, max_blocks = 64;
 
@@ -32,9 +32,9 @@ struct Blocks {
     }
 };
 
-/// Table over pairs of blocks (a, b). Each entry first counts the contacts of block a whose region begins in block b.
-/// cut() replaces the count by the index of the first of these contacts in a list that is sorted by b, then by a. A
-/// region begins at its first contact.
+/// Table to sort the contacts by the block in which their region begins; a region begins at its first contact. Entry
+/// (a, b) first counts the contacts of block a whose region begins in block b. Then cut() replaces the count by the
+/// index of the first of these contacts in the sorted list.
 class BlockTable {
 public:
     BlockTable(std::size_t blocks, Column<Index>& entry) : blocks_(blocks), entry_(entry) {
@@ -44,10 +44,9 @@ public:
     /// for later blocks are unused, because a region begins at its first contact.
     Index* row(std::size_t block) { return entry_.data() + block * blocks_; }
 
-    /// Replaces the count in each entry (a, b) by an index in a list of all contacts: the index of the first contact of
-    /// block a whose region begins in block b. The list is sorted by the block in which the region of a contact begins,
-    /// then by contact. Returns an array with one entry for each block, the index in the list of the first contact
-    /// whose region begins in this block. The last entry is the length of the list.
+    /// Replaces the count in each entry (a, b) by the index of the first of these contacts in a list of all contacts.
+    /// The list is sorted by the block in which the region of a contact begins, then by contact. Returns for each block
+    /// b the index at which it begins in the list, followed by the length of the list.
     std::array<Index, max_blocks + 1> cut() {
         std::array<Index, max_blocks + 1> begin;
         Index sum = 0;

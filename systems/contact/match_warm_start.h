@@ -44,12 +44,12 @@ struct ContactsNow {
 };
 
 /// Adds the impulse of each vanished contact (one of the last step that no longer exists) to a contact of the same
-/// pair: the nearest one within twice the contact distance whose normal is similar. Pairs without a rigid or implicit
-/// body are left out. Call it after match_warm_start. Returns false if there is nothing to do (skipped). Parallel over
-/// blocks of pairs.
+/// pair: the nearest one within twice the contact distance whose normal is similar. Otherwise the load that the
+/// vanished contact carried would be lost. Two flat faces have more contacts than degrees of freedom, and rounding
+/// makes contacts come and go.
 ///
-/// The reason: two flat faces have more contacts than degrees of freedom, and rounding makes contacts come and go. The
-/// part of the load that a vanished contact carried would otherwise be lost.
+/// Pairs without a rigid or implicit body are left out. Call it after match_warm_start. Returns false if there is
+/// nothing to do (skipped). Parallel over blocks of pairs.
 bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse);
 

@@ -18,10 +18,11 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
     return sum;
 }
 
-/// Size of the tangential impulse, to be compared with the coefficient of friction times the normal impulse. For the
-/// friction cone it is the length of the tangential impulse, for the friction pyramid the larger of its two components.
-/// With a friction axis it is a length, too, but the component perpendicular to the axis is first divided by `across`,
-/// because the coefficient of friction is smaller by this factor in that direction.
+/// Size of the tangential impulse, to be compared with the coefficient of friction times the normal impulse:
+/// - friction cone: the length of the tangential impulse;
+/// - friction pyramid: the larger of its two components;
+/// - friction axis: its length after the component perpendicular to the axis is divided by `across`, the factor of the
+///   coefficient of friction in that direction.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, const FrictionAxis& axis, Friction friction) {
     if (axis.across != 1) {
         const Real along = tangential.dot(axis.direction);
@@ -36,9 +37,9 @@ ContactState state_of(const ContactTable& contacts, std::size_t i, Friction fric
     const Vec3 &impulse = contacts.impulse[i], &normal = contacts.normal[i];
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // The impulse of a sliding contact is on the limit of dynamic friction, up to rounding, because the solver puts it
-    // there. It is also there if the solver accepts the warm start (the impulse of the last step) unchanged. This
-    // impulse has only been rotated with the normal, which keeps the ratio of tangential to normal impulse.
+    // The impulse of a sliding contact is on the limit of dynamic friction up to rounding, because the solver puts it
+    // there. If the solver accepts the impulse of the last step (warm start), it is also there: it has only been
+    // rotated with the normal.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, contacts.friction_axis[i], friction);
     const Real limit = contacts.dynamic_friction[i] * along;

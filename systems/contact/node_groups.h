@@ -72,10 +72,10 @@ struct RigidNodes {
         return !core_nodes.empty() &&
                core_nodes[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])] == cylinder_core_nodes;
     }
-    /// Moment arm of a contact on a round body [m]: the vector from a point on its core to the contact point, times the
-    /// sum of the weights of its nodes (1 for the first partner, -1 for the second). For a sphere or capsule the point
-    /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder the point is the
-    /// centre. `weight`: the sum of the weights, used only for cylinders.
+    /// Moment arm of a contact on a round body [m]: the vector from a point on its core to the contact point, times
+    /// `weight`, the sum of the weights of its nodes (1 for the first partner, -1 for the second).
+    /// - Sphere or capsule: the point is the nearest core point, so the arm is -radius normal for both partners.
+    /// - Cylinder: the point is the centre.
     Vec3 core_arm(Index node, Real weight, std::size_t contact, const Vec3& normal,
                   const TouchPoints& touch_points) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
@@ -123,9 +123,11 @@ struct RigidSpins {
     /// Spin after the kick of this step (moments of gravity and loads), before the contacts act [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
     /// Acceleration of a point that is fixed to the body, due to the rotation of the body with the spin kicked()
-    /// [m/s^2]. `arm`: vector from the centre of mass to the point [m]. `held`: true if an attachment prescribes the
-    /// motion of the body; its spin is then constant in this step. The spin of any other body changes even without
-    /// moments, because its angular momentum is constant while its inertia rotates with it.
+    /// [m/s^2]. Without moments, the angular momentum is constant while the inertia rotates with the body, so the spin
+    /// changes.
+    ///
+    /// `arm`: vector from the centre of mass to the point [m]. `held`: true if an attachment prescribes the motion of
+    /// the body; its spin is then constant in this step.
     Vec3 acceleration(std::size_t r, const Vec3& arm, bool held) const {
         const Vec3 spin = kicked(r), centripetal = spin.cross(spin.cross(arm));
         if (held) return centripetal;

@@ -56,9 +56,9 @@ struct FrameMotion {
     Vec3 acceleration = Vec3::Zero();  // due to the rotation of the frame [m/s^2]
 };
 
-/// Velocity at `point` of the frame in row `frame` of RigidBodyTable, and acceleration of the point due to the rotation
-/// of the frame. `node`: row of NodeTable of the node at the point, or no_index if the point is fixed to the frame. The
-/// velocity of the node relative to the frame adds the Coriolis acceleration.
+/// Velocity of a frame at `point`, and acceleration of the point due to the rotation of the frame. `frame`: row of
+/// RigidBodyTable. `node`: row of NodeTable of the node at the point, whose velocity relative to the frame adds the
+/// Coriolis acceleration; no_index if the point is fixed to the frame.
 FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, Index node) {
     FrameMotion at;
     if (frame == no_index) return at;
@@ -199,8 +199,9 @@ ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, con
 }
 
 /// Appends a block (CableBlock) for the equation of the mean point of a tie, if impulses can move at least one of its
-/// nodes. The points of the block are stencils, that is, nodes with weights. The last point consists of nodes of the
-/// other object. The points before it consist of up to four tied nodes each, and their sum is the mean point.
+/// nodes. The points of the block are stencils, that is, nodes with weights:
+/// - The first points consist of up to four tied nodes each. Their sum is the mean point.
+/// - The last point consists of nodes of the other object.
 void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real scale, CableBlockTable& blocks) {
     const TieTable& tie = ties.tie;
     const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);

@@ -105,9 +105,9 @@ struct TieInputs {
         for_each_share(t, [&](Index node, Real share) { mean += share * position[static_cast<std::size_t>(node)]; });
         return mean;
     }
-    /// Point of the other object to which tied node `k` is tied, at the start of the step. `k`: row of the node in the
-    /// columns of TieTable that have one entry per tied node. A tie of the kind `ball` ties only the mean point of its
-    /// nodes; `k` is then the row of its first node. `t`: row of the tie.
+    /// Point of the other object to which a node is tied, at the start of the step. `t`: row of the tie. `k`: row of
+    /// the node in the columns of TieTable that have one entry per tied node. A tie of the kind `ball` ties only the
+    /// mean point of its nodes; `k` is then the row of its first node.
     TieTarget target(std::size_t t, std::size_t k) const;
 };
 
@@ -123,9 +123,10 @@ struct TieStep {
 };
 
 /// Prepares the ties that neither rest nor are broken: appends a row to the contacts for each unbroken node of a weld
-/// or slide, and a block to `blocks` for each tie of the kind `ball`. The equations require that the position error is
-/// zero at the end of the step. An error too large for this decreases at a limited speed: recovery_speed plus the
-/// speeds of the tied points due to the spins of their bodies. Returns false if there is no tie (skipped).
+/// or slide, and a block to `blocks` for each tie of the kind `ball`. Returns false if there is no tie (skipped).
+///
+/// The equations require a position error of zero at the end of the step. Larger errors decrease at a limited speed:
+/// recovery_speed plus the speeds of the tied points due to the spins of their bodies.
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
                   CableBlockTable& blocks);
 

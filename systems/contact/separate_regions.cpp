@@ -129,9 +129,9 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set of labels.sets is identified by its first contact (first_item). Joints or cables may connect a set of nodes
-    // that has no contact. Such a set gets a number above all contact indices instead. These numbers ascend in the
-    // order in which the sets are met, and the regions of these sets follow the regions with contacts.
+    // A set of nodes in labels.sets is identified by its first contact (first_item). A set without contacts, which
+    // joints or cables connect, gets a number above all contact indices, in the order in which these sets are met.
+    // Their regions follow the regions with contacts.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

@@ -23,10 +23,13 @@ struct SeparationMemory {
 inline constexpr std::size_t least_contacts_in_blocks = 1024;
 inline constexpr int least_workers_for_blocks = 4;
 
-/// Fills the lists of contacts, joints and cables of `regions`, and `contact_region`. Two contacts are in one region if
-/// a chain of shared moving nodes (inverse mass > 0) connects them. The nodes of one group in `groups` count as one
-/// node, and joints and cables connect nodes as contacts do. With `mode` global, there is one region. Contacts without
-/// a moving node belong to no region. Returns false if there are no contacts, joints and cables (skipped).
+/// Divides contacts, joints and cables into regions: fills their lists in `regions`, and `contact_region`. With `mode`
+/// global, there is one region. Returns false if there are no contacts, joints and cables (skipped).
+///
+/// Two contacts are in one region if a chain of shared moving nodes (inverse mass > 0) connects them:
+/// - The nodes of one group in `groups` count as one node.
+/// - Joints and cables connect nodes as contacts do.
+/// - Contacts without a moving node belong to no region.
 ///
 /// Regions are numbered in the order of their first contacts. Regions without contacts follow, in the order of their
 /// first joints, then of their first cables. Each region lists its contacts, joints and cables in ascending order. The

@@ -24,9 +24,9 @@ struct ContactPartners {
     bool operator==(const ContactPartners&) const = default;
 };
 
-/// Sums of impulses and moments over contacts. The moment on each partner equals the change of its angular momentum: on
-/// a body the impulses act at its nodes, on a collider at the contact point. The two moments do not add up to zero,
-/// because friction acts at two points that are a small distance apart.
+/// Sums of impulses and moments over contacts. The impulses act at the nodes of a body, and at the contact point of a
+/// collider. Each moment is the change of angular momentum of one partner. The two do not add up to zero, because
+/// friction acts at two points a small distance apart.
 struct ContactSums {
     Vec3 impulse = Vec3::Zero();        // impulse on the first partner [N s]
     Vec3 first_moment = Vec3::Zero();   // moment on the first partner [N m s]

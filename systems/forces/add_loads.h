@@ -92,12 +92,13 @@ struct LoadInputs {
     }
 };
 
-/// Adds the forces of all loads to `applied_force`, by node [N]. If the scale of a load changes over time, the load
-/// acts with the exact mean of its scale over the force interval of the step (ForceIntervals). The impulses of all
-/// steps thus sum to the time integral of the load. Drag is computed from the velocities at the start of the step, and
-/// a traction on the present area from the positions at that time. First the loads on nodes are added in the order of
-/// LoadTable, then the sum of all fields. Parallel over nodes, except for tractions on the present area. `fields`:
-/// working memory. Returns false if there is no load.
+/// Adds the forces of all loads to `applied_force`, by node [N]. Returns false if there is no load. Parallel over
+/// nodes, except for tractions on the present area. `fields`: work memory.
+/// - A load whose scale changes over time acts with the exact mean of its scale over the force interval of the step
+///   (ForceIntervals). The impulses of all steps thus sum to the time integral of the load.
+/// - Drag is computed from the velocities at the start of the step, a traction on the present area from the positions
+///   at that time.
+/// - First the loads on nodes are added in the order of LoadTable, then the sum of all fields.
 bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
 
 /// Upper bound on the increase of omega^2 by a traction on the present area. omega is the highest circular frequency of

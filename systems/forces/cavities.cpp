@@ -44,9 +44,9 @@ Real CavityInputs::volume_part(std::size_t c, std::size_t f) const {
         const auto origin = static_cast<std::size_t>(first + face[static_cast<std::size_t>(faces[c].begin)].front());
         return -(x.col(0) - position[origin]).dot(cross_of_edges(x)) / 6;
     }
-    // The swept volume is the time integral of the area vector times the mean velocity of the corners. The corners are
-    // assumed to move along straight lines at constant velocity. The area vector is then quadratic in time, so
-    // Simpson's rule is exact.
+    // Swept volume: time integral of the area vector times the mean velocity of the corners. The corners are assumed to
+    // move along straight lines at constant velocity, so the area vector is quadratic in time, and Simpson's rule is
+    // exact.
     const Mat3& before = corners[f];
     const Vec3 area = (area_of(before) + 4 * area_of((before + x) / 2) + area_of(x)) / 6;
     return -area.dot((x - before).rowwise().mean());

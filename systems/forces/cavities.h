@@ -109,9 +109,10 @@ struct CavityOutputs {
 };
 
 /// Adds the forces of the pressure in all cavities to the applied forces of nodes. Each corner of a face receives a
-/// third of pressure times area, in the direction into the body. `now`: time of the positions [s]. The forces act for
-/// the time `kick`, which begins `lag` before `now` [s]. A prescribed pressure acts with its mean over this time. The
-/// volume of a liquid at ambient pressure is its prescribed value at time `now`. Returns false if there is no cavity.
+/// third of pressure times area, in the direction into the body. Returns false if there is no cavity.
+/// - `now`: time of the positions [s]. A liquid at ambient pressure has its prescribed volume at this time.
+/// - `kick`: time for which the forces act, beginning `lag` before `now` [s]. A prescribed pressure acts with its mean
+///   over this time.
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
                        const CavityOutputs& out);
 
@@ -173,10 +174,13 @@ struct CavityMemory {
     }
 };
 
-/// After a step of length `h` that began at time `t`: stores the pressures at time `t`, adds the prescribed flow of gas
-/// to the masses in cavities, lets gas flow through the pipes in table order, and updates the volumes of open cavities.
-/// A prescribed outflow ends when a cavity contains no more gas. Returns the energy that changes of the amounts of gas
-/// and liquid have added to the fillings [J].
+/// Ends a step of length `h` that began at time `t`:
+/// - stores the pressures at time `t`
+/// - adds the prescribed flow of gas to the masses in cavities; an outflow ends when a cavity contains no more gas
+/// - lets gas flow through the pipes in table order
+/// - updates the volumes of open cavities
+///
+/// Returns the energy that changes of the amounts of gas and liquid have added to the fillings [J].
 Real store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                     const CavityWorkInputs& step, Real t, Real h, const CavityMemory& out);
 
@@ -188,10 +192,11 @@ Real measure_cavities(const CavityInputs& cavities, const CavityWorkInputs& step
 /// `lag` seconds older than positions, as in spring_energy.
 Real cavity_energy(const CavityInputs& cavities, const CavityWorkInputs& last, Real t, Real lag);
 
-/// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or whose mass of gas changes: these
-/// bodies must not sleep. In a pipe, gas counts as flowing if the absolute pressures at both ends differ by more than
-/// 1e-9 of their sum. `marked`: by row of BodyTable; if it is empty, only the return value is computed. Returns false
-/// if there is no such body.
+/// Marks the bodies of cavities that must not sleep: those whose prescribed values change from `t` to `t + h`, or whose
+/// mass of gas changes. In a pipe, gas counts as flowing if the absolute pressures at both ends differ by more than
+/// 1e-9 of their sum. Returns false if there is no such body.
+///
+/// `marked`: by row of BodyTable; if it is empty, only the return value is computed.
 bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                  Real t, Real h, std::span<std::uint8_t> marked);
 

@@ -33,14 +33,15 @@ struct DraggedBodies {
     }
 };
 
-/// Corrects the moment of the drag on rigid bodies. The moment about the centre of mass should be -drag L, with the
-/// angular momentum L of the body. add_loads() has added the drag of the single nodes to `applied_force`, by node [N].
-/// Its moment is -drag times the angular momentum of the node masses, which differs from L. Since some node masses may
-/// be negative, it could even speed up the rotation. This function adds nodal forces that sum to zero and have the
-/// missing moment.
+/// Corrects the moment of the drag on rigid bodies: about the centre of mass it should be -drag L, with the angular
+/// momentum L of the body. Adds nodal forces that sum to zero and have the missing moment. Returns false if there is no
+/// rigid or implicit body. `fields`: from add_loads().
 ///
-/// If all nodes lie on a line, the couple about this line is left out, because nodal forces cannot exert it. `fields`:
-/// from add_loads(). Returns false if there is no rigid or implicit body.
+/// add_loads() has added the drag of the single nodes to `applied_force`, by node [N]. Its moment is -drag times the
+/// angular momentum of the node masses, which differs from L. Since some node masses may be negative, it could even
+/// speed up the rotation.
+///
+/// If all nodes lie on a line, the couple about this line is left out, because nodal forces cannot exert it.
 bool add_drag_couples(const DraggedBodies& bodies, std::span<const BodyField> fields, std::span<Vec3> applied_force);
 
 }  // namespace skerry

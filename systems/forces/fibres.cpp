@@ -44,9 +44,10 @@ FibrePull FibreLaw::pull(const Vec3& y, Real tension) const {
 Real FibreLaw::stiffness_bound(const Vec3& y, Real tension) const {
     const Real square = y.squaredNorm(), strain = std::max(square - 1, Real{0});
     const Real factor = stiffness * std::exp(exponent * strain * strain);
-    // Derivative of the stress vector by y: 2 factor strain I + 4 factor (1 + 2 exponent strain^2) y y^T
-    // + (tension/|y|) (I - y y^T/|y|^2). The second term acts only along y, the third only across it. For slack fibres
-    // `square` is taken as 1 in the second term, because their stiffness jumps as soon as they are stretched.
+    // Derivative of the stress vector by y:
+    //     2 factor strain I + 4 factor (1 + 2 exponent strain^2) y y^T + (tension/|y|) (I - y y^T/|y|^2)
+    // The second term acts only along y, the third only across it.
+    // For slack fibres `square` is taken as 1, because their stiffness jumps as soon as they are stretched.
     const Real along = 4 * factor * (1 + 2 * exponent * strain * strain) * std::max(square, Real{1});
     return 2 * factor * strain + std::max(along, tension / std::max(std::sqrt(square), least_stretch));
 }

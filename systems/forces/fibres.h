@@ -17,9 +17,11 @@
 
 namespace skerry {
 
-/// Law of a family of fibres (Holzapfel, Gasser, Ogden 2000): W = k_1/(2 k_2) (exp(k_2 E^2) - 1) with E = max(I_4 - 1,
-/// 0) and the squared stretch I_4 = |F a|^2. F is the deformation gradient, and a the direction of the fibres in the
-/// rest shape. The active tension adds the nominal stress `tension` along the fibres.
+/// Law of a family of fibres (Holzapfel, Gasser, Ogden 2000; docs/methods/elasticity.md 2.7). F is the deformation
+/// gradient, a the direction of the fibres in the rest shape, I_4 = |F a|^2 the squared stretch, and E =
+/// max(I_4 - 1, 0). The energy density is
+///     W = k_1/(2 k_2) (exp(k_2 E^2) - 1)
+/// The active tension adds the nominal stress `tension` along the fibres.
 struct FibreLaw {
     Real stiffness, exponent;  // k_1 [Pa], k_2
     // Below this stretch the active stress is reduced in proportion to the stretch. Otherwise the force would jump at a

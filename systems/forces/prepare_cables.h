@@ -116,9 +116,9 @@ struct CableMemory {
     }
 };
 
-/// Stores the tensions and lengths of the cables that act. Also adds the work of these cables in the previous step,
-/// because the lengths at the end of that step are known only now. Advances the greatest permitted length of all cables
-/// with a prescribed rate. Returns false if there is no cable.
+/// Stores the tensions and lengths of the cables that act, and advances the greatest permitted length of all cables
+/// with a prescribed rate. Also adds the work of the acting cables in the previous step, because the lengths at its end
+/// are known only now. Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
 /// Totals over the cables that the region solver has solved in a step. Cables on ghosts (copies of bodies that another

@@ -147,9 +147,11 @@ struct SpringWorkInputs {
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
 /// Elastic energy of all springs at the present positions and the present time `t` [s], plus a correction [J].
-/// Velocities are `lag` seconds older than positions. So the energy balance adds `lag` times the power of all forces to
-/// the kinetic energy, with the spring forces of the last step. The correction replaces these by the present elastic
-/// forces: it is `lag` times the power of the difference, on the anchors and by changes of rest lengths.
+///
+/// The correction is due to velocities that are `lag` seconds older than positions. The energy balance adds `lag` times
+/// the power of all forces to the kinetic energy, with the spring forces of the last step. The correction replaces
+/// these by the present elastic forces: it is `lag` times the power of the difference, on the anchors and by changes of
+/// rest lengths.
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag);
 
 struct SpringMemory {

@@ -20,9 +20,9 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T segment_distance_squared(const LaneVec3<T>& a0, const LaneVec3<T>& a1,
                                                          const LaneVec3<T>& b0, const LaneVec3<T>& b1) {
-    // Lower limit of the squared sine of the angle between the two lines. Below it the lines are nearly parallel, and
-    // rounding errors would determine where they come nearest. The position on the first segment is then taken as its
-    // start, s = 0, before it is clamped.
+    // Squared sine of the angle between the two lines below which they count as parallel, because rounding errors would
+    // determine where they come nearest. The position on the first segment is then taken as its start, s = 0, before it
+    // is clamped.
     constexpr Real noise_sine_squared = 1e-14;
     const T zero{}, one = zero + 1.0;
     const LaneVec3<T> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;

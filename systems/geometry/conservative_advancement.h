@@ -8,8 +8,10 @@
 namespace skerry {
 
 /// Time in [0, 1] at which the gap between two shapes has fallen to `near` [m] or less, but is still positive; no value
-/// if the gap stays larger than `near`. `gap`: gap at time 0 [m]. `gap_at(time)`: gap at a later time. `free_time(gap,
-/// time)`: duration after `time` in which the shapes certainly do not meet; infinite without motion.
+/// if the gap stays larger than `near`.
+/// - `gap`: gap at time 0 [m]
+/// - `gap_at(time)`: gap at a later time [m]
+/// - `free_time(gap, time)`: duration after `time` in which the shapes certainly do not meet; infinite without motion
 ///
 /// After 4096 iterations the search gives up and returns the time reached. Shapes that need so many iterations roll
 /// over each other at a distance too small to be resolved in a step.

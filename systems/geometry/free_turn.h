@@ -7,10 +7,10 @@
 
 namespace skerry {
 
-/// Rotates a body for the time `seconds` about one of its principal axes, with the angular velocity own_momentum[axis]
-/// / moments[axis]. `rotation`: principal frame to world. `own_momentum`: angular momentum in the principal frame. The
-/// principal frame rotates with the body, so this vector rotates by the opposite angle in it: the angular momentum in
-/// the world frame is conserved.
+/// Rotates a body for the time `seconds` about one of its principal axes, with the angular velocity
+/// own_momentum[axis] / moments[axis]. `rotation`: principal frame to world. `own_momentum`: angular momentum in the
+/// principal frame. It rotates by the opposite angle in this frame, so that the angular momentum in the world is
+/// conserved.
 inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat3& rotation, Vec3& own_momentum) {
     const Real angle = seconds * own_momentum[axis] / moments[axis];
     if (angle == 0) return;
@@ -25,10 +25,11 @@ inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat
 }
 
 /// Orientation (principal frame to world) of a body after a rotation without torque for `seconds`. `moments`: moments
-/// of inertia about the principal axes [kg m^2]. The motion is approximated by a symmetric composition of five
-/// rotations about principal axes. Each rotation is the exact motion for one of the three terms of the kinetic energy
-/// (Dullweber, Leimkuhler, McLachlan 1997). The method is symplectic, time-reversible and of order 2, and it conserves
-/// the angular momentum.
+/// of inertia about the principal axes [kg m^2].
+///
+/// The motion is approximated by five rotations about principal axes, in symmetric order (Dullweber, Leimkuhler,
+/// McLachlan 1997). Each is the exact motion for one of the three terms of the kinetic energy. The method is
+/// symplectic, time-reversible and of order 2, and it conserves the angular momentum.
 inline Mat3 turned_freely(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, Real seconds) {
     Mat3 turned = rotation;
     Vec3 own = rotation.transpose() * angular_momentum;

@@ -18,9 +18,9 @@ Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
 }
 
 /// Fraction of `displacement` up to which a slab of thickness `threshold` perpendicular to the unit vector `normal`
-/// separates the two features. The slab must separate them at the start, where their points are at `x`. Up to the
-/// returned fraction, each point of the first feature is at least `threshold` farther along `normal` than each point of
-/// the second one. So the distance between the features is at least `threshold`.
+/// separates the two features. Until then each point of the first feature is at least `threshold` farther along
+/// `normal` than each point of the second one. The slab must separate the features at the start, where their points are
+/// at `x`.
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
                   Real threshold) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;

@@ -33,14 +33,12 @@ struct ContactThreshold {
 /// Time in [0, 1] at which two features are nearly in contact; no value if they stay apart. The points of the features
 /// move in straight lines from `position` by `displacement`.
 ///
-/// The gap is the distance between the features minus threshold.distance. At the returned time the gap is at most
-/// `contact_slack` times the gap at the start and at most threshold.near, but the features have not met yet. The time
-/// is 0 if the features touch at the start.
+/// The gap is the distance between the features minus threshold.distance. At the returned time the features have not
+/// met yet, but the gap is at most threshold.near, and at most `contact_slack` times the gap at the start. The time is
+/// 0 if the features touch at the start.
 ///
-/// The method is additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5). In
-/// addition, an iteration advances as long as a slab (the space between two parallel planes) separates the features.
-/// Features that slide past each other thus need few iterations. After some thousand iterations the search gives up and
-/// returns the time reached.
+/// The method is additive conservative advancement with separating planes (docs/methods/collision.md 7.2; Li, Kaufman,
+/// Jiang 2021, Codimensional IPC, section 5). After some thousand iterations it gives up and returns the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const ContactThreshold& threshold = {});
 

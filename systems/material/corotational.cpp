@@ -20,8 +20,10 @@ Real Corotational::stiffness_bound(const MaterialConstants& material, const Mat3
     Vec3 s = Stretches(F).stretch;
     std::ranges::sort(s, std::greater<Real>());
     const Real rotation_term = la * (s.sum() - 3) - 2 * mu;
-    // With the rotation R nearest to F and the stretches s, dP/dF has the eigenvalues 2 mu + 3 la for a change of F
-    // along R, 2 mu + rotation_term * 2/(s_i + s_j) for the three changes of F that rotate R, and 2 mu for all others.
+    // Eigenvalues of dP/dF, with the rotation R nearest to F and the stretches s:
+    // - 2 mu + 3 la for a change of F along R
+    // - 2 mu + rotation_term * 2/(s_i + s_j) for the three changes of F that rotate R
+    // - 2 mu for all other changes of F
     Real bound = 2 * mu + std::max(Real{0}, 3 * la);
     if (rotation_term > 0) bound = std::max(bound, 2 * mu + rotation_term * 2 / std::max(s[1] + s[2], Real{0}));
     return bound;

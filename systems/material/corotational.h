@@ -59,9 +59,10 @@ struct Corotational {
         return {T{} + two_mu, pressure - two_mu, R};
     }
 
-    /// Adds an upper bound of dP/dF to H. With the rotation R nearest to F, a change X of F is mapped to 2 mu X +
-    /// lambda (R : X) R + kappa (X - R X^T R). The term with kappa bounds the stiffness due to the rotation of the
-    /// frame R with F.
+    /// Adds an upper bound of dP/dF to H (docs/methods/stable_step.md 4.2). With the rotation R nearest to F, the bound
+    /// maps a change X of F to
+    ///     2 mu X + lambda (R : X) R + kappa (X - R X^T R)
+    /// The term with kappa bounds the stiffness due to the rotation of the frame R with F.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R, Terms& H) {
         const T kappa = frame_stiffness(material, F, R);
@@ -71,27 +72,24 @@ struct Corotational {
     }
 
 private:
-    /// Returns kappa for the upper bound of dP/dF (docs/methods/stable_step.md 4.2). The frame R, the rotation nearest
-    /// to F, rotates with F. For changes X of F that rotate R, this adds the stiffness c G^-1, with S = R^T F,
-    /// G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu. Its upper bound is kappa (X - R X^T R), where kappa bounds
-    /// c G^-1.
-    ///
-    /// The eigenvalues of G are the sums s_i + s_j of two stretches. They differ by at most 2 spread from their mean
-    /// 2/3 tr S, where 6 spread^2 = |dev S|^2. kappa is c divided by the least possible sum if c > 0, otherwise by the
-    /// greatest. Sums below 1e-3 are replaced by 1e-3, because R is not unique if a sum is 0.
-    ///
-    /// Under compression kappa is negative. It is limited to -mu from below, so that the stiffness 2 mu + 2 kappa stays
-    /// non-negative. A negative stiffness causes no vibration, so it does not limit the step.
+    /// Returns kappa for the upper bound of dP/dF (docs/methods/stable_step.md 4.2). The term kappa (X - R X^T R) of
+    /// the bound, for a change X of F, bounds the stiffness that arises because the frame R, the rotation nearest to F,
+    /// rotates with F. kappa is c divided by a bound on the sums s_i + s_j of two stretches, with c =
+    /// lambda (tr S - 3) - 2 mu and S = R^T F.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
-        constexpr Real least = 1e-3;
+        constexpr Real least = 1e-3;  // lower limit of a sum s_i + s_j; R is not unique if a sum is 0
         const T s00 = dot(R.c0, F.c0), s11 = dot(R.c1, F.c1), s22 = dot(R.c2, F.c2);
         const T s01 = dot(R.c0, F.c1), s12 = dot(R.c1, F.c2), s20 = dot(R.c2, F.c0);
         const T third = (s00 + s11 + s22) / 3.0, d0 = s00 - third, d1 = s11 - third, d2 = s22 - third;
         const T spread = square_root((d0 * d0 + d1 * d1 + d2 * d2 + 2.0 * (s01 * s01 + s12 * s12 + s20 * s20)) / 6.0);
         const T mean = 2.0 * third, c = material.lame_lambda * (3.0 * third - 3.0) - 2 * material.shear_modulus;
+        // The sums differ by at most 2 spread from their mean. For c > 0 the least possible sum is the bound, otherwise
+        // the greatest.
         const T curvature = c > 0.0 ? mean - 2.0 * spread : mean + 2.0 * spread;
         const T kappa = c / (curvature > least ? curvature : T{} + least);
+        // Under compression kappa is negative. The limit -mu keeps the stiffness 2 mu + 2 kappa non-negative; a
+        // negative stiffness causes no vibration, so it does not limit the step.
         return kappa > -material.shear_modulus ? kappa : T{} - material.shear_modulus;
     }
 };

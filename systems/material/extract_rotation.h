@@ -23,13 +23,14 @@ template <class T>
         {1.0 - (yy + zz), xy + wz, zx - wy}, {xy - wz, 1.0 - (xx + zz), yz + wx}, {zx + wy, yz - wx, 1.0 - (xx + yy)}};
 }
 
-/// One Newton step towards the rotation R that maximises tr(R^T F). It changes R by the rotation vector G^-1 a, with S
-/// = sym(R^T F), G = tr(S) I - S and the axial vector a of R^T F. The error after the step is the cube of the error
-/// before. (The step a / tr(S) of Mueller 2016 leaves a third of the error.)
+/// One Newton step towards the rotation R that maximises tr(R^T F) (docs/methods/elasticity.md 3). With S = sym(R^T F),
+/// G = tr(S) I - S and the axial vector a of R^T F, it changes R by the rotation vector G^-1 a. The error after the
+/// step is the cube of the error before. (The step a / tr(S) of Mueller 2016 leaves a third of the error.)
 ///
-/// Returns true in each lane that needs no further pass (Newton step). In such a lane, R was near enough to the maximum
-/// before the step for the method to converge, and the step rotated R by less than 2e-5 rad. `trace`: tr(R^T F) for the
-/// new R, correct to fourth order in the rotation angle.
+/// `trace`: tr(R^T F) for the new R, correct to fourth order in the rotation angle. Returns true in each lane that
+/// needs no further pass (Newton step), under two conditions:
+/// - Before the step R was near enough to the maximum for the method to converge.
+/// - The step rotated R by less than 2e-5 rad.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
     // Newton's method ends after a step whose squared rotation angle is below this value [rad^2]. The angle is then
@@ -57,9 +58,9 @@ template <class T>
     // A Newton step changes the value of a quadratic function by half of the slope times the step. Here the slope is
     // `axial` and the step is the rotation vector 2 o.
     trace = before + dot(o, axial);
-    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. `scale` brings the product to
-    // the length 1: it divides by sqrt(1 + |o|^2), and its factor 1.5 - |q|^2 / 2 corrects the length of q, which
-    // rounding has changed. It does not depend on the product, so the processor can compute both at the same time.
+    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. `scale` brings the result to the
+    // length 1: it divides by |(1, o)|, and its factor 1.5 - |q|^2 / 2 corrects the rounding error of |q|. `scale` does
+    // not depend on q (1, o), so the processor can compute both at the same time.
     const T o_squared = dot(o, o);
     const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
     const LaneQuaternion<T> p = q;

@@ -1,6 +1,7 @@
-// Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
-// are computed and stored in single precision. Their rounding errors, 6e-8 of the strains, are negligible in the
-// stress. The loop over strain components contains the loop over springs; both are unrolled. Each sum is updated as
+// Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2).
+//
+// Strains are computed and stored in single precision: their rounding errors, 6e-8 of the strains, are negligible in
+// the stress. The loop over strain components contains the loop over springs; both are unrolled. Each sum is updated as
 // soon as a component is known, so that few components must be kept in registers.
 #pragma once
 
@@ -151,14 +152,15 @@ struct MaxwellStep {
     }
 };
 
-/// Relaxes the springs of a block by backward Euler. `strain`: twice Green's strain in this step. `relaxes_volume`:
-/// step length times the relaxation rate of the bulk viscosity. `last`: strains of the springs in the last step; `next`
-/// receives those of this step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus.
-/// Spring strains of the block that comes `ahead` blocks later are prefetched.
-///
-/// `dissipated` receives the energy per rest volume that the dashpots have dissipated since the last step, divided by
-/// step.modulus / 4. This energy is the mean of the spring stresses in the last step and in this step, times the strain
-/// change of the dashpots.
+/// Relaxes the springs of a block by backward Euler. Returns the second Piola-Kirchhoff stress of all springs, divided
+/// by step.modulus.
+/// - `strain`: twice Green's strain in this step.
+/// - `relaxes_volume`: step length times the relaxation rate of the bulk viscosity.
+/// - `last`: strains of the springs in the last step; `next` receives those of this step.
+/// - `ahead`: number of blocks from this one to the block whose spring strains are prefetched.
+/// - `dissipated`: receives the energy per rest volume that the dashpots have dissipated since the last step, divided
+///   by step.modulus / 4. It is the mean of the spring stresses in the last step and in this step, times the strain
+///   change of the dashpots.
 [[gnu::always_inline]] inline LaneSymmetric<Float8> relax(const MaxwellStep& step, const LaneSymmetric<Float8>& strain,
                                                           const Float8& relaxes_volume, const SpringStrain& last,
                                                           SpringStrain& next, std::size_t ahead, Float8& dissipated) {

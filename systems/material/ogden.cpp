@@ -51,9 +51,10 @@ struct PrincipalShape {
           log_stretch{log_of(stretch[0].value), log_of(stretch[1].value), log_of(stretch[2].value)},
           log_volume(log_of(volume.value)) {}
 
-    /// Quantities of one term of the law for each axis, with the stretch s_i, the exponent a and x_i = s_i / J^(1/3).
-    /// `power`: x_i^a. `over_exponent`: derivative of the term by log x_i, divided by the modulus of the term. It is
-    /// `power` / a, or log x_i if a = 0.
+    /// Quantities of one term of the law for each axis, with the stretch s_i, the exponent a and x_i = s_i / J^(1/3):
+    /// - `power`: x_i^a
+    /// - `over_exponent`: derivative of the term by log x_i, divided by the modulus of the term: `power` / a, or log
+    ///   x_i if a = 0
     struct Powers {
         Three<T> power, over_exponent;
     };
@@ -147,9 +148,8 @@ T smaller(const T& a, const T& b) {
     return a < b ? a : b;
 }
 
-/// Upper bound of the largest eigenvalue of a symmetric 3x3 matrix: the smaller of two bounds. The first follows from
-/// the mean and the variance of the eigenvalues. It is exact if the two smaller eigenvalues are equal. The second is
-/// Gershgorin's.
+/// Upper bound of the largest eigenvalue of a symmetric 3x3 matrix: the smaller of Gershgorin's bound and a bound from
+/// the mean and the variance of the eigenvalues. The latter is exact if the two smaller eigenvalues are equal.
 template <class T>
 T largest_eigenvalue(const Three<T>& diagonal, const Three<T>& off) {
     const T mean = (diagonal[0] + diagonal[1] + diagonal[2]) * (1.0 / 3);
@@ -245,9 +245,10 @@ Ogden::FrameBound<T> Ogden::frame_bound(const MaterialConstants& material, const
 
 template <class T>
 T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
-    // The stretches x of F / J^(1/3) have the product 1. So the sum S of their squares satisfies (x - 1)^2 <= S - 3 for
-    // every stretch x, and 3 (x - 1)^2 <= S - 3 for every x < 1. Also x >= 2/S, because the product of the two other
-    // stretches is at most S/2.
+    // Bounds on the stretches x of F / J^(1/3), whose product is 1 and whose squares have the sum S:
+    // - (x - 1)^2 <= S - 3
+    // - 3 (x - 1)^2 <= S - 3 for x < 1
+    // - x >= 2/S, because the product of the two other stretches is at most S/2
     const auto regular = J >= least_volume;
     const T volume = regular ? J : T{} + 1.0, log_third = log_of(volume) * (1.0 / 3), cube_root = exp_of(log_third);
     const T S = square / (cube_root * cube_root), excess = larger(S - 3.0, T{});

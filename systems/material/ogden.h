@@ -1,8 +1,9 @@
-// Law of Ogden (1972) for rubber, with separate terms for changes of shape and of volume. The energy density is Psi =
-// sum_p 2 mu c_p / a_p^2 (sum_i (s_i / J^(1/3))^a_p - 3) + K/2 (J - 1)^2 with the stretches s_i, J = det F, exponents
-// a_p and shares c_p of the shear modulus, whose sum is 1. One term of exponent 2 is the neo-Hookean law. Exponents 2
-// and -2 are the law of Mooney and Rivlin (docs/methods/elasticity.md 2.5). The limit of one term of exponent 0 is the
-// law of Hencky, whose energy of shape changes is mu sum_i log^2 (s_i / J^(1/3)).
+// Law of Ogden (1972) for rubber, with separate terms for changes of shape and of volume (docs/methods/elasticity.md
+// 2.5). With the stretches s_i, J = det F, the bulk modulus K, exponents a_p, and shares c_p of the shear modulus mu,
+// whose sum is 1, the energy density is
+//     Psi = sum_p 2 mu c_p / a_p^2 (sum_i (s_i / J^(1/3))^a_p - 3) + K/2 (J - 1)^2
+// Special cases are the laws neo-Hookean (one term of exponent 2), Mooney-Rivlin (exponents 2 and -2) and Hencky (limit
+// of one term of exponent 0).
 #pragma once
 
 #include "components/material_table.h"
@@ -46,9 +47,10 @@ struct Ogden {
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J);
 
-    /// Upper bound of that part of dP/dF which is due to the energy of shape changes, as a quadratic form in a change X
-    /// of F [Pa]: even |X_e|^2 + odd |X_o|^2 - volume (R : X)^2. R is the rotation nearest to F. X = X_e + X_o, where
-    /// R^T X_e is the symmetric part of R^T X (a stretch), and R^T X_o its skew part (a rotation).
+    /// Upper bound of that part of dP/dF which is due to the energy of shape changes [Pa]. R is the rotation nearest to
+    /// F. A change X = X_e + X_o of F consists of a stretch X_e and a rotation X_o: R^T X_e is the symmetric part of
+    /// R^T X, R^T X_o its skew part. The bound is the quadratic form
+    ///     even |X_e|^2 + odd |X_o|^2 - volume (R : X)^2
     template <class T>
     struct FrameBound {
         LaneMat3<T> R;

@@ -180,11 +180,10 @@ Mat3 normal_stiffness(const OrthotropicModuli& moduli) {
 }
 
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material) {
-    // The isotropic material must not be stiffer than the orthotropic one for any strain. Its 2 mu is nine tenths of
-    // the smallest eigenvalue of the stiffness. So the stiffness minus 2 mu I stays positive definite. Its lambda is
-    // the greatest for which this difference, minus lambda in all entries of normal strains, has no negative
-    // eigenvalue.
-    constexpr Real isotropic_share = 0.9;
+    // Isotropic material that is not stiffer than the orthotropic one for any strain. Its 2 mu is nine tenths of the
+    // smallest eigenvalue of the orthotropic stiffness. Its lambda is the greatest for which the difference of both
+    // stiffnesses has no negative eigenvalue.
+    constexpr Real isotropic_share = 0.9;  // below 1, so that the stiffness minus 2 mu I stays positive definite
     const Mat3 normal = normal_stiffness(moduli);
     const Vec3& G = moduli.shear_modulus;
     const Real least = std::min(symmetric_eigenvalues(normal)[0], 2 * G.minCoeff());

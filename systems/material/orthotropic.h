@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// systems/material/with_law.h describes the members of a material law. orthotropic.cpp defines and instantiates the
-/// templates that have no body here. C = mu sum_k M_k (x) M_k + lambda I (x) I with the matrices M_k of
+/// Members are described in systems/material/with_law.h; orthotropic.cpp defines and instantiates the templates that
+/// have no body here. The stiffness is C = mu sum_k M_k (x) M_k + lambda I (x) I with the matrices M_k of
 /// MaterialConstants::strain_modes, the identity I, and (x) for the dyadic product.
 struct Orthotropic {
     static constexpr bool has_frame = false;
@@ -50,9 +50,11 @@ struct Orthotropic {
     template <class T>
     static Slope<T> slope(const MaterialConstants& material, const LaneMat3<T>& F);
 
-    /// Adds an upper bound of dP/dF to H. It differs from dP/dF in two terms. The geometric stiffness (due to the
-    /// stress) is replaced by its largest eigenvalue times the identity, or by 0 if this eigenvalue is negative.
-    /// Compressed elements get additional stiffness, up to that of the rest shape, which they regain when they expand.
+    /// Adds an upper bound of dP/dF to H. It differs from dP/dF in two terms:
+    /// - The geometric stiffness (due to the stress) is replaced by its largest eigenvalue times the identity, or by 0
+    ///   if this eigenvalue is negative.
+    /// - Compressed elements get additional stiffness, up to that of the rest shape, which they regain when they
+    ///   expand.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const Slope<T> part = slope(material, F);
@@ -62,10 +64,12 @@ struct Orthotropic {
     }
 };
 
-/// Sets the elastic constants of an orthotropic material. Its Lame constants become those of an isotropic material that
-/// is not stiffer than the orthotropic one for any strain. The Maxwell elements, which model losses, use these Lame
-/// constants; if they were stiffer for some strain, the bound on the stable step would not hold for them. Requires
-/// valid moduli: positive shear moduli, and a positive definite compliance of the normal strains.
+/// Sets the elastic constants of an orthotropic material. Requires valid moduli: positive shear moduli, and a positive
+/// definite compliance of the normal strains.
+///
+/// Its Lame constants become those of an isotropic material that is not stiffer than the orthotropic one for any
+/// strain. They are used by the Maxwell elements, which model losses. If these were stiffer for some strain, the bound
+/// on the stable step would not hold for them.
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material);
 
 /// Rotates the axes of an orthotropic material by `rotation`.

@@ -112,9 +112,10 @@ inline RelaxationRates relaxation_rates(Real highest, Real span) {
 /// its lowest frequency has the given loss factor eta: its amplitude falls by the factor exp(-pi eta) in a period. The
 /// lowest frequency is taken to be rates_below times the lower end of the band of rates.
 ///
-/// Derivation: a mode with the motion exp(z t), where z = omega (i - eta/2), needs the stiffness -z^2 times its mass. A
-/// Maxwell element of rate r and share 1 adds the fraction z / (z + r) to the stiffness of the law. Stiffness needed
-/// and stiffness present must have the same ratio of imaginary to real part.
+/// Derivation for a mode with the motion exp(z t), where z = omega (i - eta/2):
+/// - The mode needs the stiffness -z^2 times its mass.
+/// - A Maxwell element of rate r and share 1 adds the fraction z / (z + r) to the stiffness of the law.
+/// - Stiffness needed and stiffness present must have the same ratio of imaginary to real part.
 inline Real relaxing_share(Real loss_factor, Real span) {
     const std::complex<Real> z = rates_below * std::complex<Real>(-loss_factor / 2, 1), needed = -z * z;
     std::complex<Real> added = 0;

@@ -1,6 +1,5 @@
-// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018). The energy density is finite for every F, even inverted or
-// flat: Psi = mu/2 (Ic - 3) + la/2 (J - alpha)^2 - mu/2 log(Ic + 1), minus its value in the rest shape, with Ic =
-// |F|^2, J = det F and alpha = 1 + 3 mu / (4 la).
+// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018; docs/methods/elasticity.md 2.3). The energy density is
+// finite for every deformation gradient F, also for inverted and flat elements.
 #pragma once
 
 #include "components/material_table.h"
@@ -15,9 +14,9 @@ struct StableNeoHookean {
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 82;
 
-    /// Parameters mu and lambda of the model. They are chosen so that at small strain the model has the Lame constants
-    /// of the material (Smith 2018, section 3.4; docs/methods/elasticity.md 2.3) [Pa]. For every Poisson ratio above
-    /// -1, la > mu / 8, so that alpha lies between 1 and 7.
+    /// Parameters mu and lambda of the model [Pa]. They give the model the Lame constants of the material at small
+    /// strain (Smith 2018, section 3.4; docs/methods/elasticity.md 2.3). For every Poisson ratio above -1, la is
+    /// greater than mu / 8, so it is positive.
     struct ModelModuli {
         Real mu, la;
     };
@@ -25,26 +24,29 @@ struct StableNeoHookean {
         return {4.0 / 3 * material.shear_modulus, material.lame_lambda + 5.0 / 6 * material.shear_modulus};
     }
 
-    /// Elastic energy per rest volume, with Ic = |F|^2 and J = det F: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J -
-    /// 1) + la/2 (J - 1)^2. The energy is 0 in the rest shape [J/m^3].
+    /// Elastic energy per rest volume, 0 in the rest shape, with Ic = |F|^2 and J = det F [J/m^3]:
+    ///     mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J - 1) + la/2 (J - 1)^2
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress, with Ic = |F|^2 and J = det F: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof
-    /// F [Pa].
+    /// First Piola-Kirchhoff stress, with Ic = |F|^2 and J = det F [Pa]:
+    ///     mu (1 - 1/(Ic + 1)) F + (la (J - 1) - 3/4 mu) cof F
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Upper bound of the largest eigenvalue of dP/dF: 9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F|,
-    /// with J = det F (docs/methods/stable_step.md 4.3) [Pa]. The first term is the maximum of mu (1 - 1 / (Ic + 1)) +
-    /// 2 mu Ic / (Ic + 1)^2 over Ic = |F|^2, reached at Ic = 3.
+    /// Upper bound of the largest eigenvalue of dP/dF (docs/methods/stable_step.md 4.3) [Pa]. With J = det F and Ic =
+    /// |F|^2:
+    ///     9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F|
+    /// 9/8 mu is the maximum of mu (1 - 1/(Ic + 1)) + 2 mu Ic/(Ic + 1)^2 over Ic, reached at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa]. Symbols: Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)),
-    /// p = la (J - 1) - 3/4 mu, the stretches s of F, the stretches c of cof F, and the axis k other than i and j:
+    /// dP/dF in the form of Tangent, with negative eigenvalues set to zero [Pa]. Symbols:
+    /// - stretches s of F, stretches c of cof F, axis k other than i and j
+    /// - Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu
+    ///
+    /// Entries:
     ///     normal_ii = a + 2 mu/(Ic + 1)^2 s_i^2 + la c_i^2
     ///     normal_ij = 2 mu/(Ic + 1)^2 s_i s_j + la c_i c_j + p s_k
     ///     flip_k    = a - p s_k
     ///     twist_k   = a + p s_k
-    /// Negative eigenvalues are then set to zero.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane [J/m^3].
@@ -92,13 +94,12 @@ struct StableNeoHookean {
         return 1.125 * mu + (la / 3) * (square * square) + (slope < 0.0 ? -slope : slope) * (square * (1.0 / 3) + 1.0);
     }
 
-    /// Adds an upper bound of dP/dF to H. With Ic = |F|^2 and J = det F, dP/dF maps a change X of F to
-    ///     mu (1 - 1/(Ic + 1)) X + 2 mu/(Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F),
-    /// where d(cof F) is the change of cof F.
+    /// Adds an upper bound of dP/dF to H. It is dP/dF itself (docs/methods/stable_step.md 4.3), except that the
+    /// coefficient of the identity, mu (1 - 1/(|F|^2 + 1)), is raised to 3/4 mu, its value in the rest shape, if it is
+    /// smaller.
     ///
-    /// The coefficient of X decreases under compression and is zero at F = 0. A step length computed from so small a
-    /// stiffness would be too long as soon as the element expands again. So the bound replaces the coefficient by its
-    /// value in the rest shape, 3/4 mu, where it is smaller.
+    /// Under compression this coefficient decreases to zero at F = 0. A step length computed from so small a stiffness
+    /// would be too long as soon as the element expands again.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

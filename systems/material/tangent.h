@@ -8,11 +8,13 @@
 
 namespace skerry {
 
-/// dP/dF of a material law in the principal axes of F = left diag(s) right^T [Pa]. A change X of F has the components
-/// X' = left^T X right in these axes. The change of stress then has `normal` times the vector of all X'_ii on the
-/// diagonal, and (flip + twist)/2 X'_ij + (flip - twist)/2 X'_ji off the diagonal (Stomakhin, Howes, Schroeder, Teran
-/// 2012; Smith, de Goes, Kim 2018). Entry k of `flip` and `twist` belongs to the axes i, j other than k. Negative
-/// eigenvalues of dP/dF are replaced by 0 in this form.
+/// Derivative dP/dF of the stress P in the principal axes of F = left diag(s) right^T, with negative eigenvalues
+/// replaced by 0 (Stomakhin, Howes, Schroeder, Teran 2012; Smith, de Goes, Kim 2018) [Pa].
+///
+/// A change X of F has the components X' = left^T X right in these axes. It changes these components of the stress:
+/// - diagonal: by `normal` times the vector of all X'_ii
+/// - entry ij with i != j: by (flip + twist)/2 X'_ij + (flip - twist)/2 X'_ji, with entry k of `flip` and `twist` for
+///   the axis k other than i and j
 struct Tangent {
     Mat3 left, right;
     Mat3 normal;

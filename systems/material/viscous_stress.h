@@ -10,9 +10,10 @@ template <class T>
     return {{a.c0.x, a.c1.x, a.c2.x}, {a.c0.y, a.c1.y, a.c2.y}, {a.c0.z, a.c1.z, a.c2.z}};
 }
 
-/// Viscous stress of implicit elements: F E' viscosity/|F|^2, where E' = (F^T F' + F'^T F) / 2 is the rate of Green's
-/// strain and F' the rate of F. For any deformation the norm of the stress is at most viscosity |F'|. The stability of
-/// steps relies on this bound. The stress is zero in rigid motion, and exerts no torque, because F E' F^T is symmetric.
+/// Viscous stress of implicit elements: viscosity/|F|^2 F E', where F' is the rate of F, and E' = (F^T F' + F'^T F) / 2
+/// the rate of Green's strain. Its norm is at most viscosity |F'|; the stability of steps relies on this bound.
+///
+/// The stress is zero in rigid motion. It exerts no torque, because F E' F^T is symmetric.
 template <class T>
 LaneMat3<T> viscous_stress(const T& viscosity, const LaneMat3<T>& F, const LaneMat3<T>& F_rate) {
     constexpr Real tiny = 1e-6;  // keeps the division finite for |F| = 0 and for unused lanes

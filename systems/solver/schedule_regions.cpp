@@ -11,9 +11,9 @@
 namespace skerry {
 namespace {
 
-// Constants of the cost model of docs/methods/regions.md 4.1 [microseconds]. They were measured on chains of 2 to 12
-// contacts and sheets of 18 to 1922, on one core of a shared machine (AVX-512). Their ratios decide the order of
-// regions; their absolute values decide only the size of tasks.
+// Constants of the cost model of docs/methods/regions.md 4.1 [microseconds], measured on chains of 2 to 12 contacts and
+// sheets of 18 to 1922, on one core of a shared machine (AVX-512). Their ratios decide the order of regions, their
+// absolute values only the size of tasks.
 constexpr Real single_cost = 0.06;
 constexpr Real region_cost = 0.1, contact_cost = 0.06;  // per region, per contact: loading, warm start, writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
@@ -41,9 +41,9 @@ Index contact_count(const RegionTable& regions, Index region) {
            static_cast<Index>(regions.joints_of(r).size() + regions.cables_of(r).size());
 }
 
-/// Identifier of a region without contacts. It contains the index of the first joint block of the region, or of its
-/// first cable if it has no joints. Regions without contacts come last in the list of regions, whose identifiers must
-/// ascend. So the first word of the identifier exceeds that of every contact key.
+/// Identifier of a region without contacts: its second word contains the index of the region's first joint block, or of
+/// its first cable if it has no joints. Its first word exceeds that of every contact key, because identifiers must
+/// ascend and these regions come last in the list.
 ContactKey id_without_contacts(const RegionTable& regions, std::size_t region) {
     constexpr std::uint64_t last = ~std::uint64_t{0}, of_cable = std::uint64_t{1} << 32;
     const std::span<const Index> joints = regions.joints_of(region);

@@ -15,9 +15,10 @@ namespace skerry {
 /// steps. Without keys no region is recognised from earlier steps.
 void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions);
 
-/// Writes regions.order and groups the ordered regions into tasks. Regions too large for lanes come first, by
-/// descending predicted cost (a lane is one element of the SIMD registers and solves one small region). Small regions
-/// follow by descending size, so that regions of similar size share the registers. Single contacts are last.
+/// Writes regions.order and groups the ordered regions into tasks. The order is
+/// 1. regions too large for lanes (elements of SIMD registers, each of which solves one small region), by descending
+///    predicted cost,
+/// 2. small regions by descending size, so that regions of similar size share the registers; single contacts are last.
 void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions);
 
 /// Updates the moving averages of the sweep counts with the sweeps of this step, for the next step.

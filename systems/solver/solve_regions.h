@@ -28,9 +28,11 @@ private:
 };
 
 /// Solves every region to its tolerance: a single contact in closed form, other regions by the method of the settings.
+/// Fills regions.pushed and the outcome columns of `regions` (iterations, error, status and others). Returns false if
+/// there are no regions.
+///
 /// First a team of workers solves each large region. Then tasks solve the other regions concurrently, the most
-/// expensive ones first, small ones in batches. No two regions write the same node. Fills the outcome columns of
-/// `regions` (iterations, error, status and others) and regions.pushed. Returns false if there are no regions.
+/// expensive ones first, small ones in batches. No two regions write the same node.
 bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h,
                    SolverMemory& memory, RegionTable& regions, const RegionOutputs& out);
 

@@ -1,9 +1,9 @@
-// skerry-fill: reads a closed surface from standard input and writes tetrahedra that fill the surface to a file.
-// mesh::fill and `skerry inspect --repair` start it. It is a separate program for two reasons. First, `skerry` then
-// does not link Netgen (LGPL) and the libraries that Debian's build of Netgen loads (CAD libraries, Tcl, Python and
-// MPI). Second, if Netgen crashes on a surface, only this process ends.
-//
-// engine/fill/mesher_process.h describes the formats of the input and of the output.
+// skerry-fill: reads a closed surface from standard input and writes tetrahedra that fill the surface (formats:
+// engine/fill/mesher_process.h). mesh::fill and `skerry inspect --repair` start it. It is a separate program for two
+// reasons:
+// - `skerry` then does not link Netgen (LGPL) and the libraries that Debian's build of Netgen loads (CAD libraries,
+//   Tcl, Python and MPI).
+// - If Netgen crashes on a surface, only this process ends.
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>

@@ -61,8 +61,8 @@ public:
     /// positions.
     CableSettings settings(CableHandle cable) const;
     /// Replaces the drive. A drive equal to the present one changes no bit of the state. If the new drive is a rate,
-    /// the greatest length starts at the present length of the cable. However, if the old drive is a rate, too, the
-    /// greatest length continues from its present value.
+    /// the greatest length starts at the present length of the cable, or, if the old drive is a rate, too, at its
+    /// present value.
     void set_drive(CableHandle cable, const CableDrive& drive);
 };
 

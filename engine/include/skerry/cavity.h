@@ -27,9 +27,10 @@ struct GasFilling {
 };
 
 /// A liquid whose volume is prescribed, for example by a syringe. In a cavity of the volume V its pressure above
-/// ambient is bulk_modulus log(volume / V), but not less than -ambient (vacuum). The pressure compresses the liquid by
-/// about the fraction pressure / bulk_modulus. A smaller bulk modulus than that of the real liquid allows a longer
-/// stable step, and the additional compression is often acceptable.
+/// ambient is bulk_modulus log(volume / V), but not less than -ambient (vacuum).
+///
+/// The pressure compresses the liquid by about the fraction pressure / bulk_modulus. A smaller bulk modulus than that
+/// of the real liquid compresses it more, which is often acceptable, and allows a longer stable step.
 struct LiquidFilling {
     Real bulk_modulus = 2.2e9;  // bulk modulus, > 0; default: water [Pa]
     // volume of the liquid at ambient pressure, > 0; default: the volume of the cavity when it is added [m^3]
@@ -48,8 +49,9 @@ struct CavitySettings {
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
     // Volume of the gas or liquid at the start [m^3]. Required for faces that enclose no volume, such as those of a
     // piston, and not allowed for faces that enclose one. Steps change this volume by the volume that the faces sweep.
+    //
     // Calls that place nodes, such as World::reset(body), change neither the volume nor the mass of the gas.
-    // World::reset(saved) restores the volume and the mass of the saved world.
+    // World::reset(saved) restores both as in the saved world.
     std::optional<Real> volume{};
 };
 

@@ -29,9 +29,11 @@ struct CollisionGroups {
 };
 
 /// Friction and restitution of a body, a collider, a pair of materials or a surface set. A value that is not given is
-/// taken from elsewhere. Body: from its material. Collider: from its material (SurfacePairs::set_material) or, without
-/// a material, from the body that touches it. Pair of materials: from the two objects (see MaterialPair). Surface set:
-/// from its body.
+/// taken from elsewhere:
+/// - body: from its material
+/// - collider: from its material (SurfacePairs::set_material) or, without a material, from the body that touches it
+/// - pair of materials: from the two objects (see MaterialPair)
+/// - surface set: from its body
 struct SurfaceSettings {
     // Coulomb's friction coefficient, >= 0; default value of static_friction and dynamic_friction
     std::optional<Real> friction{};

@@ -16,26 +16,25 @@ inline constexpr Real not_estimated = std::numeric_limits<Real>::quiet_NaN();
 
 /// Estimated errors of one body, relative where no unit is given. A value is `not_estimated` if the body cannot have
 /// this error; a rigid body, for example, has no error of the mesh. The mesh errors `mesh`, `deflection`,
-/// `interpolation` and `stress` are those of one sample (see ErrorEstimator): the one at which the body has the largest
-/// elastic energy.
+/// `interpolation` and `stress` belong to the sample (see ErrorEstimator) at which the body has the largest elastic
+/// energy.
 struct ErrorEstimate {
     BodyHandle body{};  // the body
     std::string name;   // name of the body
     // Error of the stress of the tetrahedra, due to the mesh: e / sqrt(e^2 + s^2), with the energy norms e of the error
     // and s of the stress.
     Real mesh = not_estimated;
-    // Relative error, due to the mesh, of the displacement that given loads cause. Positive if the mesh is too stiff,
-    // negative if it is too soft. Only displacements by deformation have this error. The relative error of the whole
-    // motion is therefore `deflection` times `deformation`, the share of the deformation in the motion.
+    // Relative error of the displacement that given loads cause, due to the mesh. Positive if the mesh is too stiff,
+    // negative if it is too soft. It applies to displacements by deformation only: multiplied by `deformation` it is
+    // the relative error of the whole motion.
     Real deflection = not_estimated;
     // Error of the displacement of a single node, due to the mesh [m]. It adds to `deflection`, the error of the body
-    // as a whole. It is estimated as the error of linear interpolation of the displacements along an edge, as root mean
-    // square over the edges.
+    // as a whole. It is the estimated error of linear interpolation along an edge, as root mean square over the edges.
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
-    // Relative error of the motion, due to the length of the steps: a / b. a: distance of the nodes from the positions
-    // that they would have with infinitely short steps. b: displacement of the nodes from the start. Both are root mean
-    // squares over the nodes, and for both the largest value of all samples is used. Not estimated for a body at rest.
+    // Relative error of the motion, due to the length of the steps: distance of the nodes from the positions with
+    // infinitely short steps, divided by their displacement from the start. Both are root mean squares over the nodes,
+    // and the largest of all samples. Not estimated for a body at rest.
     Real step = not_estimated;
     // Displacement by deformation divided by displacement from the start, at most 1. Both displacements are root mean
     // squares over the nodes, as for `step`. Not estimated for a body at rest.
@@ -68,9 +67,9 @@ public:
     /// steps with motion has passed since the last sample; otherwise does nothing. Samples take less than 2 % of the
     /// computing time of the steps.
     void sample(const World& world);
-    /// Takes the last sample. Call this once, at the end of a run. In runs of less than 8000 steps (250 if no body is
-    /// explicit) it estimates mesh errors only for the bodies with the most elastic energy, at least for one. This
-    /// limits the computing time of estimates in short runs.
+    /// Takes the last sample. Call this once, at the end of a run. To limit the computing time in runs of less than
+    /// 8000 steps (250 if no body is explicit), it then estimates mesh errors only for the bodies with the most elastic
+    /// energy, at least for one.
     void finish(const World& world);
     /// Estimates for all bodies of the world at finish(), in the order of World::bodies().
     std::vector<ErrorEstimate> bodies() const;
@@ -80,10 +79,11 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Estimated relative error of the present stress of each tetrahedron, due to the mesh: sqrt(e / E). e is the energy of
-/// the stress error of the tetrahedron, per volume. E is the sum of the energies of the stress and of the stress error
-/// of the whole body, per volume. Empty for a rigid body. To reduce the error, refine the mesh where the values are
-/// largest (Zienkiewicz, Zhu 1987).
+/// Estimated relative error of the present stress of each tetrahedron, due to the mesh; empty for a rigid body. To
+/// reduce the error, refine the mesh where the values are largest (Zienkiewicz, Zhu 1987). The values are sqrt(e / E),
+/// with the energies per volume
+/// - e: of the stress error of the tetrahedron,
+/// - E: of the stress and of the stress error of the whole body, added.
 std::vector<Real> mesh_error(const World& world, BodyHandle body);
 
 }  // namespace skerry

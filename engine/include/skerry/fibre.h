@@ -13,9 +13,9 @@ namespace skerry {
 
 class World;
 
-/// A family of fibres in tetrahedra of a body. Fibres resist stretch, but not compression. Their energy per rest volume
-/// is added to that of the material: W = k_1/(2 k_2) (exp(k_2 E^2) - 1), or k_1 E^2 / 2 if k_2 = 0. E = max(I_4 - 1,
-/// 0), with the squared stretch I_4 of the fibres (Holzapfel, Gasser, Ogden 2000).
+/// A family of fibres in tetrahedra of a body. Fibres resist stretch, but not compression. With their squared stretch
+/// I_4 and E = max(I_4 - 1, 0), they add to the material this energy per rest volume (Holzapfel, Gasser, Ogden 2000):
+///     W = k_1/(2 k_2) (exp(k_2 E^2) - 1), or k_1 E^2 / 2 if k_2 = 0
 struct FibreSettings {
     BodyHandle body{};  // explicit body, or implicit body if Settings::theta is 1
     // Numbers of tetrahedra in the mesh of the body, each at most once; empty: all tetrahedra

@@ -30,9 +30,10 @@ struct FillSettings {
     // Largest allowed distance between the given and the new surface, as a fraction of the diagonal of the bounding
     // box, from 0 to below 1. With 0 the triangles of a clean surface are kept, and other surfaces are refused.
     Real tolerance = 1e-3;
-    // Meaning of a shell (triangles connected by common edges) that lies inside another shell. true: it bounds an empty
-    // cavity. false: it bounds an empty cavity if its triangles are clockwise as seen from its outside, otherwise a
-    // region with a label of its own.
+    // Meaning of a shell (triangles connected by common edges) that lies inside another shell:
+    // - true: it bounds an empty cavity
+    // - false: it bounds an empty cavity if its triangles are clockwise as seen from its outside, otherwise a region
+    //   with a label of its own
     bool cavities = false;
     MaterialSettings material{};  // material for which the stable steps of the candidate meshes are compared
     FillLimits limits{};          // limits of each run of a mesher
@@ -70,20 +71,24 @@ struct FilledMesh {
 /// fill() ends with this exception.
 using FillProgress = std::function<void(const std::string&)>;
 
-/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Netgen fills clean surfaces (closed
-/// manifolds without crossings), and keeps their triangles bitwise unless `edge` requests others. fTetWild (Hu et al.,
-/// Fast tetrahedral meshing in the wild, 2020) fills other surfaces within the tolerance: it closes holes and unites
-/// crossing shells, and repeated runs give slightly different meshes. Each mesher runs in its own process. If several
-/// meshes are made, the one with the longest stable step is returned (docs/decisions/0026-filling-surfaces.md).
+/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Each mesher runs in its own process:
+/// - Netgen fills clean surfaces (closed manifolds without crossings), and keeps their triangles bitwise unless `edge`
+///   requests others.
+/// - fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) fills other surfaces within the tolerance. It
+///   closes holes and unites crossing shells. Repeated runs give slightly different meshes.
 ///
-/// A shell consists of triangles connected by common edges. If a shell that bounds a region lies inside another shell,
-/// the regions have the labels 1, 2, ..., beginning with the region of the largest shell. If there are nested shells or
-/// several files, the faces of each shell form a set. If there are as many files as shells, the set has the name of the
-/// file without extension, otherwise shell_1, shell_2, ...
+/// If several meshes are made, the one with the longest stable step is returned
+/// (docs/decisions/0026-filling-surfaces.md).
 ///
-/// Identical shells are used once, and a note reports them. A note also reports if the new surface is farther from the
-/// given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a file
-/// cannot be read, a mesher is not installed, or no mesher fills the surface within the limits.
+/// A shell consists of triangles connected by common edges. Shells decide the labels and sets of the mesh:
+/// - If a shell that bounds a region lies inside another shell, the regions have the labels 1, 2, ..., beginning with
+///   the region of the largest shell.
+/// - If there are nested shells or several files, the faces of each shell form a set. The set has the name of the file
+///   without extension if there are as many files as shells, otherwise shell_1, shell_2, ...
+///
+/// Notes report identical shells, which are used once, and a new surface that is farther from the given one than the
+/// tolerance, for example where a hole was closed. Throws SceneError that names the file if a file cannot be read, a
+/// mesher is not installed, or no mesher fills the surface within the limits.
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 
@@ -92,14 +97,17 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
                 const FillProgress& progress = {});
 
 /// Returns the mesh that fills a surface file. Reads it from the cache file beside the surface file, or else fills the
-/// surface and writes the cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance`,
-/// `cavities` and whether skerry-fill (the program that runs Netgen) is installed. It does not depend on `material`:
-/// the best mesh is chosen for the default material, so one file serves all materials.
+/// surface and writes the cache file.
 ///
-/// If skerry-fill is installed, but did not start, crashed or reached a limit (FilledMesh::may_change), no cache file
-/// is written, so that the next call tries again. A text file beside the cache file keeps the notes of the filling.
-/// `notes` gets the notes of reading and filling, also if the mesh comes from the cache file, and a note if no file was
-/// written.
+/// The name of the cache file contains a hash of the surface, `edge`, `tolerance`, `cavities` and whether skerry-fill
+/// (the program that runs Netgen) is installed. One file serves all materials: the best mesh is chosen for the default
+/// material, not for `material`.
+///
+/// No cache file is written if skerry-fill is installed, but did not start, crashed or reached a limit
+/// (FilledMesh::may_change). The next call then tries again.
+///
+/// `notes` gets the notes of reading and filling, and a note if no cache file was written. A text file beside the cache
+/// file keeps the notes of the filling for later calls.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

@@ -29,11 +29,11 @@ struct ForceReport {
     Real largest_force = 0;
     Index contacts = 0;       // number of contacts with an impulse in the last step
     Index most_contacts = 0;  // largest number of contacts with an impulse in any step
-    // Sum of the force intervals of the steps [s]. The force interval of a step is the time during which its forces
-    // act: from the middle of the previous step to the middle of this step. The sum is therefore the duration of the
-    // call plus half of (length of the last step before the call - length of the last step of the call). With leapfrog
-    // and for implicit bodies, the force interval is the step, and the sum is the duration
-    // (docs/methods/time_stepping.md 1.5).
+    // Sum of the force intervals of the steps [s]. The forces of a step act from the middle of the previous step to the
+    // middle of this one, its force interval (docs/methods/time_stepping.md 1.5). So the sum is the duration of the
+    // call plus half of (length of the last step before the call - length of the last step of the call).
+    //
+    // With leapfrog and for implicit bodies, the force interval is the step, and the sum is the duration.
     Real seconds = 0;
     Vec3 moment_point = Vec3::Zero();  // point about which moments are taken, as given to measure_forces [m]
     // False if the call was too short for the force to be measured (docs/outputs.md), or took no step.
@@ -65,14 +65,12 @@ struct PairForces {
 /// colliders that were removed since the last call of advance are not included.
 ///
 /// Steps do not compute sleeping bodies. The forces on a sleeping body are mean values over the time in which it was
-/// still before it fell asleep (at least sleep_time). They balance the weight and the loads of the body. The error of
-/// this balance is at most the change of the momentum of the body during this time, divided by this time. If forces
-/// were not measured during this time, the forces of the last step before the sleep are used, which World::contacts
-/// also returns.
+/// still before it fell asleep (at least sleep_time). They balance its weight and loads, with an error of at most the
+/// change of its momentum during this time, divided by this time. If forces were not measured then, those of the last
+/// step before the sleep are used, which World::contacts also returns.
 ///
-/// The impulses on the two partners of a pair are exactly opposite, but their moments about one point are not. Each
-/// impulse acts at the surface of its own object. Where there is a gap between the two surfaces, friction exerts a
-/// moment across this gap.
+/// The impulses on the two partners of a pair are exactly opposite, but their moments about one point are not: each
+/// impulse acts at the surface of its own object, so friction exerts a moment across a gap between the two surfaces.
 class Forces {
 public:
     /// Sum of the forces of all contacts on a body. Contacts of a body with itself add only to `contacts` and
@@ -85,9 +83,11 @@ public:
     ForceReport on(BodyHandle body, ColliderHandle by) const;
     ForceReport on(ColliderHandle collider, BodyHandle by) const;
     /// Forces of an attachment on its body. They keep the attached nodes on their prescribed motion: they balance
-    /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, the
-    /// force on this node belongs to the attachment added last. The drag by MaterialSettings::damping is not included:
-    /// in a body with held nodes this drag acts on all nodes, as if the body were in a medium at rest.
+    /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, its
+    /// force belongs to the attachment added last.
+    ///
+    /// The drag by MaterialSettings::damping is not included: in a body with held nodes it acts on all nodes, as if the
+    /// body were in a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
     /// All pairs of objects that touched during the last call of advance: first body-collider pairs, then body-body
     /// pairs, each sorted by handles.

@@ -8,10 +8,11 @@
 namespace skerry {
 
 /// The instruction set that the kernels of this process are compiled for, such as "x86-64-v3"; "native" if the whole
-/// library is compiled for the build machine. The first call of this function, or the first World, chooses the set: the
-/// one that the environment variable SKERRY_INSTRUCTION_SET names; without this variable, the last of
-/// instruction_sets(). All sets give the same results. Throws SceneError if the variable names none of
-/// instruction_sets(); the constructor of World then throws, too.
+/// library is compiled for the build machine. All sets give the same results.
+///
+/// The first call of this function, or the first World, chooses the set: the one that the environment variable
+/// SKERRY_INSTRUCTION_SET names; without this variable, the last of instruction_sets(). Both throw SceneError if the
+/// variable names none of instruction_sets().
 std::string_view instruction_set();
 
 /// The instruction sets for which this build has kernels and which this machine supports. The most advanced set comes

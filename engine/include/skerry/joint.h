@@ -58,9 +58,10 @@ struct JointLimits {
     std::optional<Real> lower{}, upper{};  // a missing value is no limit [rad or m]
 };
 
-/// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
-/// joint measures the motion of the first body relative to the second body or the world. For a hinge it is the angle
-/// about the axis, counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
+/// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. Its coordinate
+/// measures the motion of the first body relative to the second body or the world:
+/// - hinge: angle about the axis, counting full revolutions [rad]
+/// - slider: displacement along the axis [m]
 struct JointSettings {
     JointKind kind = JointKind::ball;  // relative motion that the joint permits
     BodyHandle first{};                // handle of a rigid body
@@ -117,9 +118,10 @@ public:
     /// present one changes no bit of the state.
     void set_motor(JointHandle joint, const std::optional<JointMotor>& motor);
     /// Sets or removes the limits of the joint coordinate. A joint beyond a limit is pulled back at a bounded speed, to
-    /// avoid jerks. For a slider the upper limit of this speed is Settings::recovery_speed, plus the speeds at which
-    /// the joint point moves around the centres of mass of both bodies when they rotate. For a hinge it is 1 rad/s plus
-    /// both angular speeds.
+    /// avoid jerks. The upper limit of this speed is
+    /// - slider: Settings::recovery_speed, plus the speeds at which the joint point moves around the centres of mass of
+    ///   both bodies when they rotate,
+    /// - hinge: 1 rad/s plus both angular speeds.
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
     /// Sets spring, damper and friction of a hinge or a slider.
     void set_passive(JointHandle joint, const JointPassive& passive);

@@ -24,14 +24,17 @@ struct LiveSettings {
     std::vector<RecordedProbe> probes{};  // quantities that the page plots while the world runs
 };
 
-/// A server for browsers on this machine that shows a world. It listens on the loopback address only. A browser needs
-/// the token of address(), a new random number for each view. Requests with another Host, Origin or token are refused.
+/// A server that shows a world to browsers on this machine:
 ///
-/// One thread advances the world and calls the functions of the view. Other threads encode and send the frames. The
-/// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only displays the
-/// world changes no bit of its state. After fork(), the server stays with the parent process; the child process can
-/// only close the view, which has no effect on the server. When the first view is made, the process begins to ignore
-/// the signal SIGPIPE, because a browser can end a connection at any time.
+/// - Access: the server listens on the loopback address only. A browser needs the token of address(), which is a new
+///   random number for each view. Requests with another Host, Origin or token are refused.
+/// - Threads: one thread advances the world and calls the functions of the view. Other threads encode and send the
+///   frames. The simulation never waits for a browser: a slow browser gets fewer frames.
+/// - Results: a browser that only displays the world changes no bit of its state.
+/// - fork(): the server stays with the parent process. The child process can only close the view, which has no effect
+///   on the server.
+/// - SIGPIPE: when the first view is made, the process begins to ignore this signal, because a browser can end a
+///   connection at any time.
 class LiveView {
 public:
     /// Starts the server, and stores the present state of the world for a reset. Throws SceneError if a setting is out
@@ -65,22 +68,26 @@ public:
 
     /// Carries out the commands that browsers have sent, and shows the world to browsers that are ready for a frame, at
     /// most 30 times a second of wall time. A command that fails changes nothing, and the browser that sent it gets the
-    /// error. If the view is paused, the call finally waits for the next command, at most 20 ms. If the view plays, the
-    /// call never waits; without a browser it costs two comparisons.
+    /// error.
+    ///
+    /// If the view is paused, the call then waits for the next command, at most 20 ms. If the view plays, the call
+    /// never waits; without a browser it costs two comparisons.
     void sync(World& world);
-    /// Does the work of sync(), and returns the simulated time by which the caller must advance the world now [s]. The
-    /// result is 0 if the view is paused or the world is ahead of the wall clock; the call then first waits for
-    /// commands, at most 20 ms. If a browser has requested a single step, the result is the length of one step.
+    /// Does the work of sync(), and returns the simulated time by which the caller must advance the world now [s]:
+    /// - the length of one step, if a browser has requested a single step,
+    /// - 0, if the view is paused or the world is ahead of the wall clock; the call then first waits for commands, at
+    ///   most 20 ms,
+    /// - otherwise at most 1/60 s.
     Real due(World& world);
-    /// Shows the world between two steps of a long call of World::advance. Call this function in the callback `go_on`
-    /// of that call, and return its result. The result is false if commands of browsers wait: the call of advance then
-    /// ends, so that sync() can carry out the commands.
+    /// Shows the world between two steps of a long call of World::advance. Call it in the callback `go_on` of
+    /// advance(), and return its result: false if commands of browsers wait. advance() then ends, so that sync() can
+    /// carry out the commands.
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. Call it after a step that failed.
     void fail(const std::string& text);
-    /// From now on refuses the resets that browsers request, and shows them the reason. A reset moves the world back in
-    /// time. Use this function, for example, while a recorder runs that could not continue at an earlier time. An empty
-    /// text allows resets again.
+    /// From now on refuses the resets that browsers request, and shows them the reason; an empty text allows resets
+    /// again. Use it, for example, while a recorder runs: a reset moves the world back in time, where the recorder
+    /// could not continue.
     void refuse_resets(const std::string& reason);
     /// Advances the world as the browsers ask, until `go_on` returns false. `go_on` is called before each step. One
     /// call of advance() covers at most 1/60 s of simulated time. A step that cannot be committed pauses the view;

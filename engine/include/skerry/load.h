@@ -43,18 +43,19 @@ struct AccelerationField {
     TimeTable scale = 1;               // factor over time
 };
 
-/// Multiplies the weight, which is the gravity of the settings times the mass. A factor of one body replaces that of
-/// all bodies. The potential energy in reports is that of the whole weight, without the factor. The difference between
-/// scaled and whole weight is treated as a load that does work.
+/// A factor of the weight, which is the gravity of the settings times the mass. A factor of one body replaces that of
+/// all bodies. The potential energy in reports is that of the whole weight. The difference between scaled and whole
+/// weight is treated as a load that does work.
 struct GravityScale {
     // if it is not given, the factor applies to all bodies without a factor of their own
     std::optional<BodyHandle> body{};
     TimeTable scale = 1;  // factor over time
 };
 
-/// A drag towards the velocity of a wind: the force on a node of mass m and velocity v is m rate (wind - v). A body
-/// that nothing else moves takes up the velocity of the wind with the time constant 1/rate, whatever its shape. Steps
-/// are not longer than 1/rate, so that the drag in one step cannot reverse a velocity.
+/// A drag towards the velocity of a wind. The force on a node of mass m and velocity v is m rate (wind - v).
+///
+/// A body that nothing else moves takes up the velocity of the wind with the time constant 1/rate, whatever its shape.
+/// Steps are not longer than 1/rate, so that the drag in one step cannot reverse a velocity.
 struct DragField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
     Real rate = 0;                     // force per mass and relative velocity, > 0 [1/s]
@@ -80,10 +81,11 @@ struct LoadState {
 
 extern template class __attribute__((visibility("default"))) ObjectView<LoadHandle>;
 
-/// A view of the loads of a world. Loads act on explicit, implicit and rigid bodies. Every load is multiplied by its
-/// `scale`, which may change over time. A step uses the mean of the scale over the time in which its forces act, so
-/// that the impulses of all steps add up to the integral of the force over time. Forces of World::set_loads are
-/// independent of these loads.
+/// A view of the loads of a world. They act on explicit, implicit and rigid bodies, in addition to the forces of
+/// World::set_loads.
+///
+/// Every load is multiplied by its `scale`, which may change over time. A step uses the mean of the scale over the time
+/// in which its forces act. The impulses of all steps therefore add up to the integral of the force over time.
 class Loads : public ObjectView<LoadHandle> {
 public:
     using ObjectView::ObjectView;

@@ -42,10 +42,12 @@ std::span<const NamedMaterial> named_materials();
 /// materials has no meaning.
 std::span<const KnownFriction> known_frictions();
 
-/// Settings of the material called `name`. `friction` is the dynamic friction of two surfaces of this material if
-/// known_frictions() lists this pair, else the default. Loss factors below 0.01 are left out. Such small values belong
-/// to stiff materials, for which implicit bodies are suitable, and implicit bodies accept no loss factor. Throws
-/// SceneError if no material has this name.
+/// Settings of the material called `name`. Throws SceneError if no material has this name.
+///
+/// - `friction` is the dynamic friction of two surfaces of this material if known_frictions() lists this pair, else the
+///   default.
+/// - Loss factors below 0.01 are left out. They belong to stiff materials, which suit implicit bodies, and implicit
+///   bodies accept no loss factor.
 MaterialSettings named_material(std::string_view name);
 
 /// A term of the law of Ogden, with the constants that the literature uses; see ogden(). The modulus mu_p and the
@@ -53,15 +55,20 @@ MaterialSettings named_material(std::string_view name);
 struct OgdenTerm {
     Real modulus, exponent;  // mu_p [Pa] and alpha_p
 };
-/// Returns `base` with the law of Ogden (1972, eq. 18), whose energy per rest volume is split into changes of shape and
-/// of volume: Psi = sum_p mu_p / alpha_p (s_1^alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2. s_i are the
-/// principal stretches divided by J^(1/3), J = det F, and K is the bulk modulus [Pa]. Sets model, terms, young_modulus
-/// and poisson_ratio. Throws SceneError unless there are one to three terms, mu_p alpha_p > 0 for each, and K > 0.
+/// Returns `base` with the law of Ogden (1972, eq. 18). Sets model, terms, young_modulus and poisson_ratio. Throws
+/// SceneError unless there are one to three terms, mu_p alpha_p > 0 for each, and K > 0.
+///
+/// The energy per rest volume consists of a part for changes of shape and a part for changes of volume:
+/// Psi = sum_p mu_p / alpha_p (s_1^alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2
+/// Here J = det F, s_i are the principal stretches divided by J^(1/3), and K is the bulk modulus [Pa].
 MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base = {});
 
-/// Returns `base` with the law of Mooney and Rivlin, whose energy per rest volume is Psi = c10 (I_1 - 3) + c01 (I_2 -
-/// 3) + K/2 (J - 1)^2. I_1 and I_2 are the invariants of the stretches divided by J^(1/3), J = det F, and K is
-/// `bulk_modulus`. c10, c01 and K are in [Pa]. This is the law of Ogden with the exponents 2 and -2.
+/// Returns `base` with the law of Mooney and Rivlin, which is the law of Ogden with the exponents 2 and -2.
+///
+/// With J = det F, let I_1 and I_2 be the first two invariants of the stretches divided by J^(1/3), and K the
+/// `bulk_modulus`. The energy per rest volume is
+/// Psi = c10 (I_1 - 3) + c01 (I_2 - 3) + K/2 (J - 1)^2
+/// The constants c10, c01 and K are in [Pa].
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base = {});
 
 /// Returns `base` with the law `orthotropic`, which is meant for strains of some per cent at any rotation. Sets model,

@@ -66,14 +66,18 @@ Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 /// on the sphere.
 Mesh ball(Real radius, int resolution);
 
-/// A mesh that represents a rigid sphere in output. The first node is the centre. The next twelve nodes are the corners
-/// of an icosahedron, and all other nodes lie between these corners on the sphere. The triangles are flat and belong to
-/// one tetrahedron each.
+/// A mesh that represents a rigid sphere in output. The triangles are flat and belong to one tetrahedron each. Order of
+/// the nodes:
+/// - the centre,
+/// - the twelve corners of an icosahedron,
+/// - all other nodes, which lie between these corners on the sphere.
 Mesh sphere_picture(Real radius);
 
-/// A mesh that represents a rigid capsule in output. The first two nodes are the ends of the axis, at z = -length/2 and
-/// z = length/2; all other nodes lie on the surface. The next ten nodes are, for each end, the pole and four nodes of
-/// the rim. The triangles are flat. `length` is the length of the straight part [m].
+/// A mesh that represents a rigid capsule in output. The triangles are flat. `length` is the length of the straight
+/// part [m]. Order of the nodes:
+/// - the ends of the axis, at z = -length/2 and z = length/2,
+/// - ten nodes: for each end, the pole and four nodes of the rim,
+/// - all other nodes, which lie on the surface, too.
 Mesh capsule_picture(Real radius, Real length);
 
 /// A mesh that represents a rigid cylinder in output. The first node is the centre of the cylinder, the second is the
@@ -85,11 +89,14 @@ Mesh cylinder_picture(Real radius, Real height);
 /// rounded up to even.
 Mesh cylinder(Real radius, Real height, int resolution);
 
-/// A solid of revolution about z. `profile` lists (radius, z) from bottom to top, with ascending z and positive radii;
-/// the outline is linear between these points. The mesh has `resolution` elements across the largest diameter (an odd
-/// number is rounded up to even). The height of a layer along z is about the size of an element. Where kinks of the
-/// outline are closer together than 0.6 element sizes, the mesh keeps the sharpest kink and cuts off the others. An end
-/// with a radius below 0.3 element sizes closes to a point.
+/// A solid of revolution about z, with `resolution` elements across the largest diameter (an odd number is rounded up
+/// to even). `profile` lists points (radius, z) of the outline from bottom to top, with ascending z and positive radii.
+/// The outline is linear between them.
+///
+/// The height of a layer along z is about the size of an element. Details that are too small for the mesh are
+/// simplified:
+/// - Where kinks of the outline are closer together than 0.6 element sizes, only the sharpest is kept.
+/// - An end with a radius below 0.3 element sizes closes to a point.
 Mesh lathe(std::span<const std::array<Real, 2>> profile, int resolution);
 
 /// A skittle of the given height, standing on z = 0. It is a lathe() mesh with the outline of a ninepin.
@@ -108,14 +115,22 @@ struct TableShape {
 /// Returns a mesh of a table.
 Mesh table(const TableShape& shape);
 
-/// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary), VTK XML .vtu
-/// (unstructured grids; ASCII, base64 and raw, also compressed by zlib), TetGen .node/.ele (`path` may name either
-/// file), Medit .mesh/.meshb (ASCII and binary) or Abaqus .inp. Tetrahedra of second order are divided into eight
-/// linear ones each, which together have all nodes of the file. Tetrahedra of higher order are refused. Other kinds of
-/// elements and unused nodes are dropped; Mesh::file_number then lists the numbers of the remaining nodes. Inverted
-/// tetrahedra are turned: two of their nodes change places. If turning would make tetrahedra overlap, the shape itself
-/// is faulty; the mesh is then left as in the file, and `inspect` counts the faults. `notes`, if given, gets sentences
-/// about divided, dropped and turned elements, each with the name of the file.
+/// Reads a mesh from a file in one of these formats:
+/// - Gmsh .msh (1, 2.2, 4.1; ASCII and binary)
+/// - legacy VTK .vtk (ASCII and binary), and VTK XML .vtu (unstructured grids; ASCII, base64 and raw, also compressed
+///   by zlib)
+/// - TetGen .node/.ele (`path` may name either file)
+/// - Medit .mesh/.meshb (ASCII and binary)
+/// - Abaqus .inp
+///
+/// Elements:
+/// - Tetrahedra of second order are divided into eight linear ones each, which together have all nodes of the file.
+///   Tetrahedra of higher order are refused.
+/// - Other kinds of elements and unused nodes are dropped. Mesh::file_number then lists the numbers of the remaining
+///   nodes.
+/// - Inverted tetrahedra are turned: two of their nodes change places. If turning would make tetrahedra overlap, the
+///   shape itself is faulty. The mesh is then left as in the file, and `inspect` counts the faults.
+/// `notes`, if given, gets sentences about divided, dropped and turned elements, each with the name of the file.
 ///
 /// An Abaqus file must list its nodes and elements itself, in Cartesian coordinates. Keywords that generate or include
 /// them, such as *NGEN and *INCLUDE, are refused. Instances of parts are joined into one mesh. Steps, loads and
@@ -156,11 +171,13 @@ Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullp
 /// share the first corner of the polygon. `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Turns the inverted tetrahedra of a mesh as `read` does, for a mesh that was made in memory. `notes` and errors use
-/// `name` in place of a file name. Also sorts the numbers in sets, and gives the faces of sets the orientation of the
-/// boundary.
-/// Throws SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or
-/// if a set has a number that is out of range or a face that no tetrahedron has.
+/// Prepares a mesh that was made in memory: turns its inverted tetrahedra as `read` does, sorts the numbers in sets,
+/// and gives the faces of sets the orientation of the boundary. `notes` and errors use `name` in place of a file name.
+///
+/// Throws SceneError
+/// - if a tetrahedron uses a node twice or a node that does not exist,
+/// - if a position is not finite,
+/// - if a set has a number that is out of range or a face that no tetrahedron has.
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);
 
 /// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` returns an equal mesh. The file name must end in

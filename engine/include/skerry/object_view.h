@@ -11,11 +11,15 @@ namespace skerry {
 
 class World;
 
-/// A view of all objects of one kind of a world. It is valid until the world is moved or destroyed. Functions of views
-/// that change something may only be called between calls of advance. They throw SceneError and change nothing if a
-/// handle is stale or a value is out of range. The objects belong to the state of the world: they are saved, cloned and
-/// hashed. If a body or collider is removed, the objects that name it are removed, too. The header of each view has an
-/// `extern template` declaration for its kind, with the attribute that makes the shared library export the functions.
+/// A view of all objects of one kind of a world. It is valid until the world is moved or destroyed. The objects belong
+/// to the state of the world: they are saved, cloned and hashed. If a body or collider is removed, the objects that
+/// name it are removed, too.
+///
+/// Functions that change something may only be called between calls of advance. They throw SceneError and change
+/// nothing if a handle is stale or a value is out of range.
+///
+/// The header of each view has an `extern template` declaration for its kind, with the attribute that makes the shared
+/// library export the functions.
 template <class HandleType>
 class ObjectView {
 public:

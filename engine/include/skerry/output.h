@@ -49,12 +49,14 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Collects frames and writes one self-contained HTML page that plays the run. The page shows bodies coloured by speed,
-/// stress or strain, contacts by stick or slide, joints, ties, cables and springs by force, values under the pointer,
-/// and plots of stage times and energies. It can export pictures and videos. It works offline, because three.js is
-/// inlined. The frames are kept in memory in the compressed form of the page. Positions are accurate to 1/32768 of the
-/// extent of their body. Values such as speed or stress are stored as square roots with 11 bits, which is finer for
-/// small values (docs/decisions/0016-page-stream.md).
+/// Collects frames and writes one HTML page that plays the run. The page works offline, because it contains everything
+/// that it needs, including three.js.
+///
+/// - It shows bodies coloured by speed, stress or strain, contacts by stick or slide, joints, ties, cables and springs
+///   by force, values under the pointer, and plots of stage times and energies. It can export pictures and videos.
+/// - The frames are kept in memory in the compressed form of the page (docs/decisions/0016-page-stream.md). Positions
+///   are accurate to 1/32768 of the extent of their body. Values such as speed or stress are stored as square roots
+///   with 11 bits, which is finer for small values.
 class PageWriter {
 public:
     /// The page is written to `file` by close().
@@ -97,10 +99,13 @@ struct FilmSettings {
 };
 
 /// Writes a film in the binary format of USD (Universal Scene Description), which Blender, Houdini and other programs
-/// open without plug-ins (docs/outputs.md). The file has a mesh for each body and each collider, with velocities for
-/// motion blur. The quantity of FilmColor is a colour and a number at each vertex: von Mises stress [Pa], speed [m/s],
-/// or contact pressure [Pa]. Each frame is written immediately to a temporary file, which close() moves to its place;
-/// so the film is complete or does not exist.
+/// open without plug-ins (docs/outputs.md).
+///
+/// The file has a mesh for each body and each collider, with velocities for motion blur. The quantity of FilmColor is a
+/// colour and a number at each vertex: von Mises stress [Pa], speed [m/s], or contact pressure [Pa].
+///
+/// Each frame is written immediately to a temporary file, which close() moves to its place. The film is therefore
+/// complete or does not exist.
 class FilmWriter {
 public:
     /// Throws SceneError if the file cannot be written, if its extension is not .usd or .usdc, or if a setting is

@@ -14,10 +14,13 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// A local contact problem u = W r + q with the relative velocities u and the impulses (reactions) r. u and r have the
-/// components (normal N, tangent 1, tangent 2) for each contact; T denotes both tangents. The solution r lies in the
-/// friction cone |r_T| <= mu r_N, the vector (u_N + mu |u_T|, u_T) lies in the dual cone, and these two vectors are
-/// orthogonal. The matrix W is stored in compressed rows of 3x3 blocks.
+/// A local contact problem: find the impulses (reactions) r and the relative velocities u = W r + q that satisfy
+/// Coulomb's law of friction. For each contact, r and u have the components (normal N, tangent 1, tangent 2); T denotes
+/// both tangents. The law, with the friction coefficient mu of the contact:
+/// - The vector r lies in the friction cone |r_T| <= mu r_N.
+/// - The vector (u_N + mu |u_T|, u_T) lies in the dual cone.
+/// - These two vectors are orthogonal.
+/// The matrix W is stored in compressed rows of 3x3 blocks.
 struct ContactProblem {
     std::string name;               // name in messages and files
     std::vector<Index> row_offset;  // index of the first block of each row; contacts + 1 entries
@@ -65,15 +68,18 @@ struct ProblemSolution {
     bool converged = false;    // true if error <= tolerance
 };
 
-/// Reads the contact problem of an FCLIB file (HDF5). A local problem is read unchanged. A global problem (M v = H r +
-/// f, u = H^T v + w, with the mass matrix M and the velocities v of the bodies) is condensed to its contacts: W = H^T
-/// M^-1 H and q = H^T M^-1 f + w. Throws SceneError.
+/// Reads the contact problem of an FCLIB file (HDF5). Throws SceneError.
+///
+/// - A local problem is read unchanged.
+/// - A global problem is condensed to its contacts. With the mass matrix M and the velocities v of the bodies, it reads
+///   M v = H r + f, u = H^T v + w. The local problem has W = H^T M^-1 H and q = H^T M^-1 f + w.
 ContactProblem read_problem(const std::filesystem::path& file);
 
 /// Writes a local problem in the format of FCLIB, with W in compressed columns, so that other solvers can read it. If
-/// `reaction` is given (one vector per contact), a solution is written, too. Equal problems give equal bytes. The file
-/// appears complete or not at all. Throws SceneError if the problem is empty, if its arrays have inconsistent sizes or
-/// values out of range, or if the file cannot be written.
+/// `reaction` is given (one vector per contact), a solution is written, too.
+///
+/// Equal problems give equal bytes. The file appears complete or not at all. Throws SceneError if the problem is empty,
+/// if its arrays have inconsistent sizes or values out of range, or if the file cannot be written.
 void write_problem(const ContactProblem& problem, const std::filesystem::path& file,
                    std::span<const Vec3> reaction = {});
 
@@ -82,10 +88,11 @@ void write_problem(const ContactProblem& problem, const std::filesystem::path& f
 /// them. Throws SceneError.
 ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts);
 
-/// Separates the problem into independent regions and solves each region, starting from r = 0. With Friction::pyramid
-/// the errors of the solution, and so `converged`, refer to the friction pyramid instead of the cone: the natural map
-/// clamps each tangential component of r separately. Throws SceneError if the arrays of the problem have inconsistent
-/// sizes, or if a value or a setting is out of its range.
+/// Separates the problem into independent regions and solves each region, starting from r = 0. Throws SceneError if the
+/// arrays of the problem have inconsistent sizes, or if a value or a setting is out of its range.
+///
+/// With Friction::pyramid the errors of the solution, and so `converged`, refer to the friction pyramid instead of the
+/// cone: the natural map (docs/methods/errors.md) clamps each tangential component of r separately.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
 /// Errors of given reactions, and their violation of Coulomb's law as an energy. The errors are defined as in FCLIB and
@@ -128,19 +135,19 @@ struct StrainedPoints {
     std::vector<Mat3> response;
 };
 
-/// Contacts between point masses, in world axes. A contact i has up to four nodes node[a], its stencil. Its relative
-/// velocity is u_i = sum_a weight[a] velocity[node[a]] + offset_i. An impulse r_i adds weight[a] inverse_mass[node[a]]
-/// r_i to the velocity of node[a].
+/// Contacts between point masses, in world axes. Contact i acts on up to four nodes node[a], its stencil.
+/// - Its relative velocity is u_i = sum_a weight[a] velocity[node[a]] + offset_i.
+/// - Its impulse r_i adds weight[a] inverse_mass[node[a]] r_i to the velocity of node[a].
 struct LumpedContacts {
     // The following arrays have one entry per contact.
     std::vector<std::array<Index, 4>> node;   // nodes of the stencil
     std::vector<std::array<Real, 4>> weight;  // signed weights of these nodes in the relative velocity
     std::vector<Vec3> normal;                 // unit normal of the contact
-    // Velocity offset of the contact [m/s]: the sum of three contributions minus a friction correction. The
-    // contributions are due to the gap, the motion of the collider, and the angular velocity of round bodies. The
-    // correction makes friction act along the sliding direction at the middle of the step. The forces of the step
-    // change the sliding velocity; the correction is half of that part of the change that is perpendicular to the
-    // sliding direction.
+    // Velocity offset of the contact [m/s]. It is the sum of
+    // - three velocities, due to the gap, the motion of the collider, and the angular velocity of round bodies,
+    // - a correction that makes friction act along the sliding direction at the middle of the step. The forces of the
+    //   step change the sliding velocity; the correction is minus half of the part of this change that is perpendicular
+    //   to the sliding direction.
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // coefficient of friction mu
     // The following arrays have one entry per node.

@@ -43,15 +43,17 @@ struct RankSettings {
     std::uint64_t seed = 1;  // seed of OwnerMap::random
 };
 
-/// Divides the world of rank 0 among all ranks, which must all call the function. Each other rank passes a world, which
-/// may be empty. A part of the world of rank 0, with the same handles, replaces its content. Only the backend, the
-/// number of threads and the callback of watch_steps() stay. If the world cannot be divided, throws SceneError on all
-/// ranks.
+/// Divides the world of rank 0 among all ranks, which must all call the function. If the world cannot be divided,
+/// throws SceneError on all ranks. The world of another rank may be empty. Its content is replaced by a part of the
+/// world of rank 0, with the same handles; only its backend, its number of threads and the callback of watch_steps()
+/// stay.
 ///
-/// Afterwards each rank simulates the bodies that it owns. All ranks must make the same calls of advance() and
-/// gathered(). An error of one rank alone, such as too little memory, ends all ranks with a message and exit code 1.
-/// Calls that change objects of a divided world throw SceneError. Functions that read a divided world, such as energy()
-/// or state_hash(), use only the bodies that this rank holds; read results from gathered().
+/// Afterwards each rank simulates the bodies that it owns. Rules for a divided world:
+/// - All ranks must make the same calls of advance() and gathered().
+/// - Calls that change objects throw SceneError.
+/// - Functions that read it, such as energy() or state_hash(), use only the bodies that this rank holds. Read results
+///   from gathered().
+/// - An error of one rank alone, such as too little memory, ends all ranks with a message and exit code 1.
 void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});
 
 /// Returns the complete world on rank 0, and an empty optional on the other ranks. All ranks must call the function.

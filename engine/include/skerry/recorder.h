@@ -30,10 +30,11 @@ struct PointProbe {
     // made.
     std::optional<Vec3> origin{};
 };
-/// Returns a probe for the material point that is now at `point` (world coordinates [m]), interpolated in the
-/// tetrahedron that contains it. If no tetrahedron contains the point, the probe follows the nearest node instead.
-/// Throws SceneError if this node is farther away than the mean edge length of the surface. The point of a body without
-/// tetrahedra, which is rigid, may be anywhere.
+/// Returns a probe for the material point that is now at `point` (world coordinates [m]). It is interpolated in the
+/// tetrahedron that contains the point, or follows the nearest node if no tetrahedron does. Throws SceneError if this
+/// node is farther away than the mean edge length of the surface.
+///
+/// The point of a body without tetrahedra, which is rigid, may be anywhere.
 PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point);
 
 /// Records position, displacement and velocity of the centre of mass of a body.
@@ -95,9 +96,10 @@ struct VolumeProbe {
 struct PoseProbe {
     std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};  // the recorded object
 };
-/// Records velocity and angular velocity. For a body they are the velocity of the centre of mass and the angular
-/// velocity of the rigid motion with the same angular momentum. For a collider or an attachment they are those of the
-/// last step, for the origin of its pose.
+/// Records velocity and angular velocity:
+/// - for a body: the velocity of the centre of mass, and the angular velocity of the rigid motion with the same angular
+///   momentum;
+/// - for a collider or an attachment: the velocities of its frame, at the origin of its pose, in the last step.
 struct VelocityProbe {
     std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};  // the recorded object
 };
@@ -125,10 +127,12 @@ struct SeriesColumn {
     std::string heading() const;
 };
 
-/// Records time series. The first call of sample() at or after each multiple of `every` records a row of values. Forces
-/// of contacts and attachments in a row cover all calls of advance since the previous row: impulses are sums, forces
-/// and moments are means, and largest_force is the largest force of any step. All other values are those at the time of
-/// the row. All rows stay in memory as long as the Recorder exists.
+/// Records time series. The first call of sample() at or after each multiple of `every` records a row of values. All
+/// rows stay in memory as long as the Recorder exists.
+///
+/// - Forces of contacts and attachments cover all calls of advance since the previous row: impulses are sums, forces
+///   and moments are means, and largest_force is the largest force of any step.
+/// - All other values are those at the time of the row.
 class Recorder {
 public:
     /// `every` is the time between rows, >= 0 [s]; with 0 every sample makes a row. If a probe needs forces and the
@@ -149,11 +153,12 @@ public:
     /// Returns the values of a row, one per column. The span is valid until the next sample.
     std::span<const Real> row(std::size_t number) const;
 
-    /// Writes the rows recorded so far to a CSV file. From now on each new row is written as soon as it is recorded, so
-    /// a run that is killed leaves a file of complete rows. An existing file is replaced as in write_csv(). With
-    /// `keep_until` [s], the rows of the existing file up to this time stay at the beginning of the new file; its
-    /// headings must be those of this Recorder. Throws SceneError if the file cannot be written. If a later row cannot
-    /// be written, sample() throws the same error.
+    /// Writes the rows recorded so far to a CSV file, and from now on each new row as soon as it is recorded. A run
+    /// that is killed therefore leaves a file of complete rows. Throws SceneError if the file cannot be written; if a
+    /// later row cannot be written, sample() throws it.
+    ///
+    /// An existing file is replaced as in write_csv(). With `keep_until` [s], its rows up to this time stay at the
+    /// beginning of the new file; its headings must be those of this Recorder.
     void stream_csv(const std::filesystem::path& file, std::optional<Real> keep_until = {});
     /// Writes a CSV file: headings with units in the first line, then numbers with all digits, "nan" for values that
     /// were not measured. An existing file is replaced completely or not at all. Throws SceneError.

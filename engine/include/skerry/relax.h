@@ -19,10 +19,11 @@ struct RelaxSettings {
     // steps, because in a vibration the forces balance for a moment, too.
     Real tolerance = 1e-3;
     int max_steps = 100000;  // largest number of time steps for each load step, >= 1
-    // Number of load steps, >= 1. With 1, the loads act in full from the start. Otherwise forces, tractions and
-    // accelerations of loads, forces of World::set_loads, prescribed pressures, and tensions of cables and fibres grow
-    // from zero in this number of equal load steps, each of which ends in equilibrium. Weight and drag always act in
-    // full from the start. If a load step finds no equilibrium, it is halved, at most six times.
+    // Number of load steps, >= 1. The loads grow from zero in this number of equal load steps, each of which ends in
+    // equilibrium. With 1, they act in full from the start.
+    // - Growing loads: forces, tractions and accelerations of loads, forces of World::set_loads, prescribed pressures,
+    //   and tensions of cables and fibres. Weight and drag always act in full.
+    // - A load step that finds no equilibrium is halved, at most six times.
     int load_steps = 1;
 };
 
@@ -42,19 +43,20 @@ struct RelaxReport {
 };
 
 /// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965; Cundall
-/// 1976). The function takes ordinary steps, with contact and friction. Each time the kinetic energy of a body has
-/// passed a maximum, the velocities of the body are set to zero; joined bodies are stopped together. All bodies start
-/// and end without velocities. Friction or bistable shapes can permit several equilibria; the motion during the steps
-/// then decides which one is found.
+/// 1976; docs/methods/loads.md 3). The function takes ordinary steps, with contact and friction. Each time the kinetic
+/// energy of a body has passed a maximum, its velocities are set to zero; joined bodies are stopped together.
 ///
-/// Time does not advance: values over time and prescribed motions stay at their present values, colliders and
-/// attachments do not move, gas does not flow, cables with a prescribed rate are not drawn in, ties do not break, and
-/// the report of the run does not count the steps. Viscous stress is fully relaxed at the end. If no equilibrium is
-/// found within max_steps, for example because a body slides, or if a step cannot be completed, the world does not
-/// change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
-///
-/// Calls `go_on`, if given, with the report so far after each step; if it returns false, the relaxation ends and the
-/// world does not change.
+/// - Start and end: all bodies are without velocities. Viscous stress is fully relaxed at the end.
+/// - Several equilibria: friction or bistable shapes can permit them; the motion during the steps then decides which
+///   one is found.
+/// - Time does not advance: values over time and prescribed motions stay at their present values, colliders and
+///   attachments do not move, gas does not flow, cables with a prescribed rate are not drawn in, ties do not break, and
+///   the report of the run does not count the steps.
+/// - Failure: the world does not change if no equilibrium is found within max_steps, for example because a body slides,
+///   or if a step cannot be completed.
+/// - Errors: those of World::settle_start(), and SceneError if a setting is out of range.
+/// - `go_on`, if given, is called with the report so far after each step. If it returns false, the relaxation ends and
+///   the world does not change.
 RelaxReport relax(World& world, const RelaxSettings& settings = {},
                   const std::function<bool(const RelaxReport&)>& go_on = {});
 

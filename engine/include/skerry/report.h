@@ -33,17 +33,20 @@ enum class ContactMotion {
     stick,  // the objects press on each other without sliding
     slide,  // the objects press on each other and slide
 };
-/// The condition that limits the length of a step (docs/step_length.md). An attempt at a step is discarded if it shows
-/// an inversion, a crossing, a failure of Newton's method, or a sudden impact that deforms an element too fast (counted
-/// as `speed`). If the attempt is repeated with a shorter step, later steps become longer only gradually: by at most a
-/// half per step after a sudden impact, and by at most a fifth per step after the other three.
+/// The condition that limits the length of a step (docs/step_length.md).
+///
+/// An attempt at a step is discarded if it shows an inversion, a crossing, a failure of Newton's method, or a sudden
+/// impact that deforms an element too fast (counted as `speed`). If it is repeated with a shorter step, later steps
+/// become longer only gradually:
+/// - by at most a half per step after a sudden impact,
+/// - by at most a fifth per step after the other three.
 enum class StepLimit {
     setting,  // Settings::step_size
     rest,     // the stable step of a body in its rest shape
     strain,   // deformation shortened the stable step of a body, or Newton's method failed for a longer step
-    // In a longer step, the deformation gradient of an element would change by more than 0.2 (Frobenius norm), or a
-    // body with a joint or tie would rotate by more than 0.1 rad. This limit is usually known before the step, from the
-    // speed of deformation in the previous step.
+    // A longer step would change the deformation gradient of an element by more than 0.2 (Frobenius norm), or rotate a
+    // body with a joint or tie by more than 0.1 rad. This limit is usually known before the step, from the speed of
+    // deformation in the previous step.
     speed,
     inversion,  // an element would turn inside out
     crossing,   // surfaces would pass through each other
@@ -62,8 +65,8 @@ struct EnumNames<StepLimit> {
 };
 
 /// A contact of the last step, or a contact between sleeping bodies. A contact between sleeping bodies is shown as in
-/// the last step before the bodies fell asleep. Its impulse is scaled to the present `seconds`, so that force() returns
-/// the contact force of that step.
+/// the last step before they fell asleep; its impulse is scaled to the present `seconds`, so that force() returns the
+/// contact force of that step.
 struct Contact {
     // Body with the point, if a point touches a triangle. Body with the first edge, if two edges touch. A stale handle
     // if this point or edge belongs to a mesh collider.
@@ -87,9 +90,9 @@ struct Contact {
     Vec3 friction_direction = Vec3::Zero();  // unit tangent; zero: friction is the same in all directions
     Vec3 slip = Vec3::Zero();                // tangential velocity of the first body relative to the other [m/s]
     Vec3 impulse = Vec3::Zero();             // impulse on the first body [N s]
-    // Duration of the forces in this step [s], by which force() divides the impulse: the time from the middle of the
-    // previous step to the middle of this step. It equals the step length in three cases: both steps are equally long,
-    // the integrator is leapfrog, or only implicit bodies (and colliders) touch.
+    // Duration of the forces in this step [s]: the time from the middle of the previous step to the middle of this
+    // step. force() divides the impulse by it. It equals the step length if both steps are equally long, if the
+    // integrator is leapfrog, or if only implicit bodies (and colliders) touch.
     Real seconds = 0;
     ContactMotion motion = ContactMotion::open;  // motion after the step
     // Number of the region of the contact: a group of contacts that share moving nodes or bodies and are solved
@@ -218,9 +221,9 @@ struct DynamicsEstimate {
     // implicit_cost if it is implicit. They include the elements of all bodies, and the contacts and solves of this
     // body.
     Real explicit_cost = 0, implicit_cost = 0;
-    // Estimate of the largest strain: the larger of the strains by the weight of the body and by an impact. The assumed
-    // impact speed is sqrt(u^2 + 2 g H), with the initial speed u of the body, the magnitude g of gravity, and a fall
-    // from the height H of ten times the size of the body.
+    // Estimate of the largest strain: the larger of the strains by the weight of the body and by an impact
+    // (docs/methods/implicit_bodies.md 6). With the initial speed u, the magnitude g of gravity, and the fall height H
+    // of ten times the size of the body, the speed of the impact is sqrt(u^2 + 2 g H).
     Real strain = 0;
     // Frequency above which the steps of an implicit body damp vibrations instead of resolving them [Hz]: 1/(4 pi
     // deforming_step). At this frequency, angular frequency times deforming_step is 1/2. 0: steps damp no vibrations.
@@ -274,9 +277,11 @@ struct SelfCrossing {
     // true if the body's setting self_contact was on when the crossing was last found
     bool self_contact = false;
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
-    // Number of places where an edge passes through a triangle. last_places: in the last check of this surface, even if
-    // it found none. most_places: in the check with most places. A place is left out if its edge and triangle are at
-    // most one mean edge length apart in the rest shape, because crushed elements cause such places.
+    // Number of places where an edge passes through a triangle:
+    // - last_places: in the last check of this surface, even if it found none,
+    // - most_places: in the check with most places.
+    // Places whose edge and triangle are at most one mean edge length apart in the rest shape are left out, because
+    // crushed elements cause them.
     Index last_places = 0, most_places = 0;
 
     /// Returns a text such as "the surface of body 'knot' crosses itself in up to 312 places, first found at 0.41 s and
@@ -363,26 +368,31 @@ struct WorldReport : RunCounters {
     // Searches since the start: broad_searches for pairs of near bodies, pair_searches for pairs of near features
     // (nodes, edges, triangles). candidates: number of feature pairs that the last searches found.
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    // Sums over the run. crossing_tests: tests of near features (a node and a triangle, two edges, or a feature and a
-    // collider) that move fast enough to cross in a step. crossings_found: crossings found in discarded attempts at a
-    // step. crossed: crossings that no attempt at a step could prevent.
+    // Sums over the run:
+    // - crossing_tests: tests of near features (a node and a triangle, two edges, or a feature and a collider) that
+    //   move fast enough to cross in a step,
+    // - crossings_found: crossings found in discarded attempts at a step,
+    // - crossed: crossings that no attempt at a step could prevent.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
-    // Largest overlap, in any step, of held nodes with a collider or another held body, which no contact can reduce
-    // [m]. held_body: name of the body with these nodes. held_in: name of the collider or body that they overlap. These
-    // names are empty if one of the two objects was removed.
+    // Largest overlap, in any step, of held nodes with a collider or another held body [m]. No contact can reduce it.
+    // The names are empty if one of the two objects was removed:
+    // - held_body: name of the body with these nodes,
+    // - held_in: name of the collider or body that they overlap.
     Real held_penetration = 0;
     std::string held_body, held_in;        // see held_penetration
     Energy energy;                         // present energies of the world
     Vec3 momentum = Vec3::Zero();          // momentum of all bodies [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Largest errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not
-    // explain. The balances are checked every 256 steps (every 128 steps if there are clusters) and now. A relative
-    // error is the absolute error divided by a sum of magnitudes: the energy or momentum that is present, plus that
+    // explain. The balances are checked every 256 steps (every 128 steps if there are clusters) and now.
+    //
+    // A relative error is the absolute error divided by a sum of magnitudes: the present energy or momentum, plus that
     // which was exchanged.
     Real energy_error = 0, energy_error_share = 0;  // absolute error [J]; relative error [1]
-    // Absolute error [kg m/s] and relative error [1] of the momentum. They are NaN in two cases, because the balance
-    // does not include the momentum that is then absorbed. A held body is damped: the damping absorbs it. A held node
-    // belongs to an implicit element: the inertia of this element absorbs it, and World::forces reports how much.
+    // Absolute error [kg m/s] and relative error [1] of the momentum. They are NaN if momentum is absorbed that the
+    // balance does not include:
+    // - by the damping of a held body,
+    // - by the inertia of an implicit element with a held node. World::forces reports how much.
     Real momentum_error = 0, momentum_error_share = 0;
     // Number of steps since the balances were restarted by the last change from outside, such as an added body.
     std::uint64_t balanced_steps = 0;
@@ -391,17 +401,18 @@ struct WorldReport : RunCounters {
     // Number of the tetrahedron with worst_volume_ratio, in the mesh of its body.
     Index worst_volume_element = -1;
     Index near_inversion = 0;  // number of tetrahedra with det F (volume ratio) below 0.1
-    // Number of smoothed elements (unions of parts of tetrahedra around an edge or a node) with less than a fifth of
-    // their rest volume. They reveal tetrahedra that are folded against each other although none of them is inverted.
-    // `folded_body` is the first body with such elements. `folded_element` is a tetrahedron of the most compressed
-    // element of this body.
+    // Number of strongly compressed smoothed elements: those with less than a fifth of their rest volume. A smoothed
+    // element is a union of parts of tetrahedra around an edge or a node. Strong compression reveals tetrahedra that
+    // are folded against each other, although none of them is inverted.
+    //
+    // folded_body: the first body with such elements. folded_element: a tetrahedron of its most compressed element.
     Index folded = 0;
     std::string folded_body;    // see folded
     Index folded_element = -1;  // see folded
     Index inverted = 0;         // number of tetrahedra with det F (volume ratio) below 0
-    // Angle by which the fastest rotating collider turns during the longest step allowed now [rad]. Contacts assume
-    // that each point of the collider moves along a straight line within a step. This assumption causes a position
-    // error of angle^2/2 times the distance of the point from the axis of rotation.
+    // Angle by which the fastest rotating collider turns during the longest step allowed now [rad]. It determines an
+    // error: contacts assume that points of the collider move along straight lines within a step. At the distance r
+    // from the axis of rotation, the position error is r angle^2/2.
     Real collider_turn = 0;
     std::string turning_collider;  // name of the collider of collider_turn
 

@@ -46,10 +46,13 @@ struct BodyForceControl {
 };
 /// Sets the acceleration of gravity. Values per interval: three [m/s^2].
 struct GravityControl {};
-/// Sets a value that the settings of an object give as a TimeTable. One value per interval: for a cable the prescribed
-/// tension [N], length [m] or rate [m/s]; for a cavity the pressure [Pa], the inflow of gas [kg/s] or the volume of
-/// liquid [m^3]; for a pipe the pressure of its reservoir [Pa]; for a spring the rest length [m]; for a load the scale
-/// [1]; for fibres the active tension [Pa].
+/// Sets a value that the settings of an object give as a TimeTable. One value per interval:
+/// - cable: the prescribed tension [N], length [m] or rate [m/s],
+/// - cavity: the pressure [Pa], the inflow of gas [kg/s] or the volume of liquid [m^3],
+/// - pipe: the pressure of its reservoir [Pa],
+/// - spring: the rest length [m],
+/// - load: the scale [1],
+/// - fibres: the active tension [Pa].
 struct ValueControl {
     // object whose value is set
     std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle, FibreHandle> object{};
@@ -81,9 +84,10 @@ struct RolloutSettings {
     int threads = 0;                         // number of threads of the rollout; 0: the number of cores
     bool keep_worlds = false;                // true: the result contains the worlds at the end of the rollout
     // If given, called once for each copy before its first interval, for example to change materials or poses.
-    // `number`: index of the copied world in the argument `worlds` of rollout(). Several threads call the function at
-    // once. It must not remove objects that controls or probes name. If it throws, the rollout ends and rethrows the
-    // exception of the world with the lowest number.
+    // `number`: index of the copied world in the argument `worlds` of rollout().
+    //
+    // Several threads call the function at once. It must not remove objects that controls or probes name. If it throws,
+    // the rollout ends and rethrows the exception of the world with the lowest number.
     std::function<void(World& copy, std::size_t number)> prepare{};
     // If given, called about every 20 ms on the thread that called rollout(). If it returns false or throws, all worlds
     // stop before their next step, and rollout() returns or rethrows the exception.
@@ -121,20 +125,20 @@ struct RolloutResult {
     std::vector<World> worlds;
 };
 
-/// Advances a copy of each world through all intervals, several worlds at once. The given worlds do not change. During
-/// the call no other thread may use them, and go_on may only read them. A world may be listed several times. All must
-/// be clones of one world, so that the handles of controls and probes are valid in each of them.
+/// Advances a copy of each world through all intervals, several worlds at once. In each interval a copy applies the
+/// controls, calls advance(dt) and samples a Recorder. The results are bitwise those of such a loop over single worlds,
+/// on any number of threads.
 ///
-/// Each copy, in each interval, applies the controls, calls advance(dt) and samples a Recorder. The results are bitwise
-/// those of such a loop over single worlds, on any number of threads. If a step of a copy is refused, this copy stops
-/// and the others continue. If there are fewer worlds than threads, each world gets an equal number of threads.
-///
-/// Memory: each thread of the rollout has one copy of a world at a time, and the results need 8 bytes per value. With
-/// keep_worlds all copies remain; each keeps the number of threads with which it was advanced. To continue a rollout,
-/// keep the worlds and pass them to the next call. To start again from the same states, pass the original worlds again.
-/// Resetting copies instead saves no time: World::reset takes as long as a new copy, about 0.4 ms for a world of 4,000
-/// tetrahedra.
-///
+/// - Input: the given worlds do not change. During the call no other thread may use them, and go_on may only read them.
+///   A world may be listed several times. All must be clones of one world, so that the handles of controls and probes
+///   are valid in each of them.
+/// - Failure: if a step of a copy is refused, this copy stops and the others continue.
+/// - Threads: if there are fewer worlds than threads, each world gets an equal number of threads.
+/// - Memory: each thread of the rollout has one copy of a world at a time, and the results need 8 bytes per value. With
+///   keep_worlds all copies remain; each keeps the number of threads with which it was advanced.
+/// - Next calls: to continue a rollout, keep the worlds and pass them to the next call. To start again from the same
+///   states, pass the original worlds again. World::reset of the copies would save no time: it takes as long as a new
+///   copy, about 0.4 ms for a world of 4,000 tetrahedra.
 /// Throws SceneError before any world runs if a setting, a handle or a value is invalid.
 RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings);
 /// Advances `count` copies of one world.

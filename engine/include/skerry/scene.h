@@ -26,10 +26,11 @@ struct SceneOverrides {
     std::optional<StartOverlaps> start_overlaps{};    // Settings::start_overlaps
     std::optional<Real> step_size{};                  // Settings::step_size [s]
     std::optional<ElementKind> element{};  // element kind for all bodies, in place of the kinds in the scene file
-    // Assignments PLACE=VALUE to keys of the scene file, such as bodies[0].position=[0,0,1]. They are made in the given
-    // order, before the other members of this struct replace values. They change only the scene file itself, not the
-    // files that it includes. PLACE is written as in error messages about the scene file. VALUE is JSON; if it is not
-    // valid JSON, it is taken as a text.
+    // Assignments PLACE=VALUE to keys of the scene file, such as bodies[0].position=[0,0,1]. PLACE is written as in
+    // error messages about the scene file. VALUE is JSON; if it is not valid JSON, it is taken as a text.
+    //
+    // They are made in the given order, before the other members of this struct replace values. They do not change the
+    // files that the scene file includes.
     std::vector<std::string> assignments{};
     std::string fill_python{};  // Python interpreter for filling surfaces; see mesh::FillSettings::python
 };

@@ -16,9 +16,11 @@ namespace skerry {
 class World;
 
 /// A view of the named sets of the bodies of a world. It is valid until the world is moved or destroyed. A new body has
-/// the sets of its mesh (Mesh::sets). Sets are saved and cloned, and steps do not depend on them. Nodes and tetrahedra
-/// are numbered within the body. Functions throw SceneError if a handle is stale or a body has no set of the given
-/// name; the message lists the sets that the body has.
+/// the sets of its mesh (Mesh::sets), with nodes and tetrahedra numbered within the body. Sets are saved and cloned,
+/// and steps do not depend on them.
+///
+/// Functions throw SceneError if a handle is stale or a body has no set of the given name; the message lists the sets
+/// that the body has.
 class Sets {
 public:
     /// `world` must exist as long as the view.

@@ -55,12 +55,13 @@ struct MaterialSettings {
     // Decay rate of velocities, >= 0 [1/s]. In a free body, velocities relative to its rigid motion decay, so momentum
     // is conserved. In a body with held nodes, velocities relative to the world decay.
     Real damping = 0;
-    // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body. In
-    // each period a free vibration loses about the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05
-    // to 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001. A positive value makes the stable step a few per
-    // cent shorter (docs/methods/elasticity.md 6). If not given, explicit bodies have default_loss_factor, and implicit
-    // bodies have no such losses. If a value above 0 is given, `implicit` is refused, and `automatic` makes the body
-    // explicit.
+    // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body
+    // (docs/methods/elasticity.md 6). In each period a free vibration loses about the fraction 2 pi loss_factor of its
+    // energy.
+    // - Typical values: rubber 0.05 to 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001.
+    // - Not given: explicit bodies have default_loss_factor, implicit bodies no such losses.
+    // - Above 0: the stable step is a few per cent shorter, `implicit` is refused, and `automatic` makes the body
+    //   explicit.
     std::optional<Real> loss_factor{};  // from 0 to 0.3
     // Damping ratio of volume changes of an element, at the highest natural frequency of this element. Implicit bodies
     // do not use this value.
@@ -68,9 +69,11 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;  // elastic law
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
-    // Elastic constants of the law `orthotropic`. For this law, the viscous stress (loss_factor, bulk_viscosity) and
-    // estimates such as that of the expected strain use an isotropic material instead. It is at most as stiff as the
-    // orthotropic one for every strain. Its constants replace young_modulus and poisson_ratio.
+    // Elastic constants of the law `orthotropic`.
+    //
+    // Viscous stress (loss_factor, bulk_viscosity) and estimates, such as that of the expected strain, use an isotropic
+    // material instead. It is at most as stiff as the orthotropic one for every strain. young_modulus and poisson_ratio
+    // are replaced by the constants of this isotropic material.
     OrthotropicModuli orthotropic{};
     std::optional<Plasticity> plasticity{};  // only with the law `hencky`, and only for explicit bodies
 };
@@ -81,15 +84,17 @@ enum class BodyDynamics : std::uint8_t {
     // The body does not deform. It has the mass and the inertia of its mesh, or given ones. From its materials it uses
     // only density, friction and restitution (docs/methods/rigid_bodies.md).
     rigid,
-    // The body deforms by backward Euler (see Settings::theta), which is stable at any step length. This suits stiff
-    // bodies. At strains up to about 2 %, elasticity is linear in the frame that moves with the body. At larger strains
-    // it follows the material law, and Newton's method solves each step (docs/methods/implicit_bodies.md).
+    // The body deforms by backward Euler (see Settings::theta), which is stable at any step length and suits stiff
+    // bodies (docs/methods/implicit_bodies.md). At strains up to about 2 %, elasticity is linear in the frame that
+    // moves with the body. At larger strains it follows the material law, and Newton's method solves each step.
     implicit_elastic,
-    // The engine chooses when the body is added. The body becomes implicit if the predicted cost of the scene is then
-    // less than half of the cost with this body explicit, and the expected strain is at most 2 %; otherwise it becomes
-    // explicit. Both costs are predicted for the step length that the bodies added earlier allow
-    // (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body added later requires much shorter steps,
-    // the costs are compared again. An implicit body can then become explicit, as by World::set_dynamics().
+    // The engine chooses when the body is added (docs/methods/implicit_bodies.md 6, World::dynamics_choice). The body
+    // becomes implicit under two conditions, otherwise explicit:
+    // - The predicted cost of the scene is less than half of the cost with this body explicit. Both costs are predicted
+    //   for the step length that the bodies added earlier allow.
+    // - The expected strain is at most 2 %.
+    // If a body added later requires much shorter steps, the costs are compared again. An implicit body can then become
+    // explicit, as by World::set_dynamics().
     automatic,
 };
 template <>
@@ -223,10 +228,11 @@ struct Settings {
     // damps vibrations. The value 0.55 causes a tenth of this damping. Values below 1 require the integrator
     // symplectic_euler (docs/methods/implicit_bodies.md 2). Change it when an implicit body must keep vibrating.
     Real theta = 1;
-    // Upper limit of the step length of implicit bodies without attachments [s]. With 0, implicit bodies use the step
-    // length of the other bodies. With a value above 0, an implicit body takes one long step while other bodies that
-    // need shorter steps take several (docs/methods/implicit_bodies.md 9). Such values require the integrator
-    // symplectic_euler. Change it when implicit bodies take most of the computing time beside explicit ones.
+    // Upper limit of the step length of implicit bodies without attachments [s]. Change it when implicit bodies take
+    // most of the computing time beside explicit ones. Values above 0 require the integrator symplectic_euler.
+    // - 0: implicit bodies use the step length of the other bodies.
+    // - Above 0: an implicit body takes one long step while other bodies that need shorter steps take several
+    //   (docs/methods/implicit_bodies.md 9).
     Real implicit_step = 0;
     // Time integrator (docs/step_length.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;
@@ -260,10 +266,12 @@ struct Settings {
     // are attached or have already made a step are never moved. Change it when no body may be moved at the start.
     StartOverlaps start_overlaps = StartOverlaps::resolve;
     // If true, bodies that touch or are joined fall asleep together when each of them has been still for sleep_time.
-    // Steps leave sleeping bodies and their contacts unchanged, until another object presses on such a body, or you
-    // change the body. A body is still if it hardly moves, becomes no faster, and does not move steadily in one
-    // direction. It is then near its equilibrium: the distance to it is at most about a thousandth of the deflection of
-    // the body under its weight (docs/methods/skipping.md 3.1). Change it when you study slower or smaller motion.
+    // Change it when you study slower or smaller motion. Steps leave sleeping bodies and their contacts unchanged,
+    // until another object presses on such a body, or you change the body.
+    //
+    // A body is still if it hardly moves, becomes no faster, and does not move steadily in one direction
+    // (docs/methods/skipping.md 3.1). It is then near its equilibrium: the remaining distance is at most about a
+    // thousandth of its deflection under its weight.
     bool sleep = true;
     // Time for which a body must be still before it falls asleep, >= 0 [s]. Change it when bodies fall asleep too early
     // or too late.

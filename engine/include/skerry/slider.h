@@ -19,10 +19,11 @@ struct SliderTarget {
     Pose start{};           // for a PoseControl: pose of the object at the value 0
 };
 
-/// A value within bounds that drives one object, or several objects in the same way. For a PoseControl the value is a
-/// displacement in the direction `along` [m], or an angle about the axis `about` through the origin of the object's
-/// frame [rad]. For other controls it is the value that the control sets. A slider can also be used with clones of the
-/// world, because its handles name the same objects there.
+/// A value within bounds that drives one object, or several objects in the same way. A slider can also be used with
+/// clones of the world, because its handles name the same objects there. Meaning of the value:
+/// - PoseControl: a displacement in the direction `along` [m], or an angle about the axis `about` through the origin of
+///   the object's frame [rad].
+/// - Other controls: the value that the control sets.
 struct Slider {
     std::string name;                     // unique in its scene
     std::string unit;                     // SI unit of the value; 1 for factors

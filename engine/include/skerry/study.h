@@ -172,9 +172,10 @@ struct StudyResult {
     std::vector<StudyRun> runs;             // runs[0] is the run of the scene as it is
     std::vector<StudyQuantity> quantities;  // values and error bars of all reported columns
     double wanted_error = 0;                // StudySettings::error
-    // Half widths of the error bars of the values in runs[0].columns: bands[c][r] belongs to row r of column c. The
-    // list of a column that is not reported is empty. After the time StudyQuantity::agree_until of the quantities that
-    // come from a column, its half widths are NaN, except in columns with is_statistic.
+    // Half widths of the error bars of the values in runs[0].columns: bands[c][r] belongs to row r of column c.
+    // - The list of a column that is not reported is empty.
+    // - A half width is NaN after the time StudyQuantity::agree_until of the quantities that come from its column,
+    //   except in columns with is_statistic.
     std::vector<std::vector<Real>> bands;
     std::optional<CheapestSettings> cheapest;  // empty if no quantity has the verdict `known` or `irregular`
     Real agree_until = infinity;               // time until which runs with shifted starts agree on all positions [s]
@@ -214,11 +215,12 @@ struct StudySettings {
 };
 
 /// Runs a scene with several meshes, steps, tolerances and element kinds, and determines the error of each probe. The
-/// runs and their order of importance are listed in docs/study.md. The results of runs do not depend on the number of
-/// threads; only the choice of the runs that fit into the budget depends on it. If a variant fails, the study
-/// continues. If the scene as it is fails in a step, the study ends without quantities, and StudyResult::sentences
-/// contains the reason.
+/// runs and their order of importance are listed in docs/study.md.
 ///
+/// - Threads: the results of runs do not depend on their number; only the choice of the runs that fit into the budget
+///   does.
+/// - Failed runs: if a variant fails, the study continues. If the scene as it is fails in a step, the study ends
+///   without quantities, and StudyResult::sentences contains the reason.
 /// Throws SceneError if the scene cannot be read or built, a setting or the name of a probe is invalid, the folder
 /// holds runs of another scene or of other settings, or a file of the scene changes during the study.
 StudyResult study(const std::filesystem::path& scene, const StudySettings& settings = {});

@@ -23,18 +23,20 @@ struct MaterialPair {
 };
 
 /// A view of the surface properties of pairs of materials in a world. It is valid until the world is moved or
-/// destroyed. Functions that change pairs may only be called between calls of advance. They throw SceneError and change
-/// nothing if a handle is stale or a value is out of range. Pairs belong to the state of the world: they are saved,
-/// cloned and hashed. The order of the two materials of a pair has no effect.
+/// destroyed. Pairs belong to the state of the world: they are saved, cloned and hashed. The order of the two materials
+/// of a pair has no effect.
+///
+/// Functions that change pairs may only be called between calls of advance. They throw SceneError and change nothing if
+/// a handle is stale or a value is out of range.
 class SurfacePairs {
 public:
     /// `world` must exist as long as the view.
     explicit SurfacePairs(World& world) : world_(&world) {}
 
-    /// Sets the properties of contacts between two materials, and wakes the bodies that have one of the two materials.
-    /// The material of a body in a contact is BodySettings::material, even where its tetrahedra have other materials.
-    /// Properties of a pair take precedence over the friction and restitution of single bodies and colliders.
-    /// Properties of surface sets take precedence over those of a pair.
+    /// Sets the properties of contacts between two materials, and wakes the bodies that have one of them. The material
+    /// of a body in a contact is BodySettings::material, even where its tetrahedra have other materials.
+    ///
+    /// Precedence, highest first: properties of surface sets, of pairs of materials, of single bodies and colliders.
     void set(MaterialHandle first, MaterialHandle second, const SurfaceSettings& surface);
     /// Removes the properties of a pair. Does nothing if the pair has none.
     void remove(MaterialHandle first, MaterialHandle second);
@@ -79,10 +81,11 @@ class SurfaceSets : public ObjectView<SurfaceSetHandle> {
 public:
     using ObjectView::ObjectView;
 
-    /// Adds a set. It is removed with its body. Where sets overlap, the set that was added last applies. At a contact,
-    /// a property of the set replaces that of the body and that of the pair of materials. The property is combined with
-    /// that of the other object by the general rule (see MaterialPair). If both surfaces have directions, the contact
-    /// uses the geometric mean of their friction tensors.
+    /// Adds a set, which is removed with its body. Where sets overlap, the set that was added last applies.
+    ///
+    /// At a contact, a property of the set replaces that of the body and that of the pair of materials. It is combined
+    /// with that of the other object by the general rule (see MaterialPair). If both surfaces have directions, the
+    /// contact uses the geometric mean of their friction tensors.
     SurfaceSetHandle add(const SurfaceSetSettings& set);
     /// Settings of a set.
     SurfaceSetSettings settings(SurfaceSetHandle set) const;

@@ -117,11 +117,14 @@ inline constexpr Real default_weld = 1e-6;
 /// A tolerance for check_surface() with which no nodes are merged, not even equal ones.
 inline constexpr Real no_weld = -1;
 
-/// Checks a surface. First merges nodes that are at most d = `tolerance` * (diagonal of the bounding box) apart; a
-/// chain of such nodes becomes one node. With the tolerance 0 only equal nodes are merged. Two triangles cross if their
-/// projections on every axis overlap by more than the tolerated overlap: the larger of d and default_weld times the
-/// diagonal. The order of the nodes and triangles does not change. Throws SceneError if a node is not finite or a
-/// triangle has a node that does not exist. The error uses `name` as the name of the surface.
+/// Checks a surface. `name` is its name in errors. Throws SceneError if a node is not finite or a triangle has a node
+/// that does not exist.
+///
+/// - Merging: first merges nodes that are at most d = `tolerance` * (diagonal of the bounding box) apart; a chain of
+///   such nodes becomes one node. With the tolerance 0 only equal nodes are merged. The order of the nodes and
+///   triangles does not change.
+/// - Crossing: two triangles cross if their projections on every axis overlap by more than the tolerated overlap. This
+///   is the larger of d and default_weld times the diagonal.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 

@@ -13,13 +13,14 @@
 namespace skerry {
 
 /// A tie between nodes of a deformable body and another object: the body `to_body`, which may be of any kind, the
-/// collider `to_collider`, or the world if neither is given. Each node is tied in its present position to the nearest
-/// surface point of the other object. Ties::add() throws SceneError if this point is farther away than the mean edge
-/// length of the surface of `body`. The tie of a single node acts like a ball joint.
+/// collider `to_collider`, or the world if neither is given.
 ///
-/// The kind `ball` ties only one point: the mean point of all nodes, weighted by their masses. When the tie is made,
-/// this point may be at any distance from a rigid object; from then on it keeps its position relative to this object.
-/// The impulse of the tie acts on the nodes in proportion to their masses.
+/// - The kinds `weld` and `slide` tie each node, in its present position, to the nearest surface point of the other
+///   object. The tie of a single node acts like a ball joint. Ties::add() throws SceneError if the surface point is
+///   farther away than the mean edge length of the surface of `body`.
+/// - The kind `ball` ties only one point: the mean point of all nodes, weighted by their masses. It may be at any
+///   distance from a rigid object when the tie is made, and from then on keeps its position relative to it. The impulse
+///   of the tie acts on the nodes in proportion to their masses.
 struct TieSettings {
     TieKind kind = TieKind::weld;  // motion that the tie permits
     BodyHandle body{};             // a deformable body
@@ -28,9 +29,9 @@ struct TieSettings {
     // surface.
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider; not together with `to_body`
-    // Upper limit of the force on a tied node, > 0 [N]. Each node breaks off by itself, at the end of the first step in
-    // which its force exceeds the limit. A tie of the kind `ball` breaks as a whole if the total force exceeds the
-    // limit. By default, a tie does not break.
+    // Upper limit of the force on a tied node, > 0 [N]. By default, a tie does not break.
+    // - Each node breaks off by itself, at the end of the first step in which its force exceeds the limit.
+    // - A tie of the kind `ball` breaks as a whole if the total force exceeds the limit.
     Real break_force = infinity;
     // false: each node keeps its initial distance from the surface. true: the tie closes this distance, at a speed
     // limited by Settings::recovery_speed.

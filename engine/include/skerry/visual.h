@@ -41,10 +41,11 @@ struct VisualSurface {
 
 namespace mesh {
 
-/// Reads a visual surface from a file in one of the formats of `read_surface`. From .ply and Wavefront .obj files it
-/// also takes texture coordinates. The line `mtllib` of an .obj file names .mtl files, from which it takes materials:
-/// the lines newmtl, Kd, d, Tr and map_Kd. `notes`, if given, gets a sentence for each missing .mtl file, and for each
-/// material that no file defines. Throws SceneError for invalid files.
+/// Reads a visual surface from a file in one of the formats of `read_surface`. Throws SceneError for invalid files.
+///
+/// From .ply and Wavefront .obj files it also takes texture coordinates. The line `mtllib` of an .obj file names .mtl
+/// files, whose lines newmtl, Kd, d, Tr and map_Kd give materials. `notes`, if given, gets a sentence for each missing
+/// .mtl file, and for each material that no file defines.
 VisualSurface read_visual(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 }  // namespace mesh
@@ -62,8 +63,8 @@ struct VisualFit {
 /// state_hash(). Functions throw SceneError if a handle is stale.
 ///
 /// Each node of the surface follows the nearest point of the body. A node outside of the body also has an offset from
-/// this point. The mean deformation gradient of the tetrahedra around the point rotates and stretches the offset. The
-/// surface therefore reproduces affine motions exactly, and stays connected (docs/outputs.md).
+/// this point, which rotates and stretches with the body: by the mean deformation gradient of the tetrahedra around the
+/// point. The surface therefore reproduces affine motions exactly, and stays connected.
 class Visuals {
 public:
     /// `world` must exist as long as the view.

@@ -47,10 +47,12 @@ public:
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
 
-    // Copies and files. These functions are allowed between calls of advance (docs/save_restore.md). A copy continues
-    // exactly like this world, bit by bit, on any number of threads. Handles of this world name the same objects in the
-    // copy. The report() of the copy covers the whole run, including the steps of this world. The copy does not get the
-    // functions of watch_steps() and watch_contact_problems(), recorded traces, and the computing times of stages.
+    // Copies and files; allowed between calls of advance (docs/save_restore.md). A copy continues exactly like this
+    // world, bit by bit, on any number of threads.
+    // - Handles of this world name the same objects in the copy.
+    // - The report() of the copy covers the whole run, including the steps of this world.
+    // - The copy does not get the functions of watch_steps() and watch_contact_problems(), recorded traces, and the
+    //   computing times of stages.
     /// Returns a copy of this world.
     World clone(const LoadSettings& settings = {}) const;
     /// Saves the world. The file is written under another name and then renamed, so an existing file is replaced
@@ -65,17 +67,19 @@ public:
     static World from_bytes(std::span<const std::byte> bytes, const LoadSettings& settings = {});
 
     // Building the world; allowed between calls of advance. In callbacks of advance these functions throw SceneError.
-    // Removing an object keeps the handles of all other objects valid. The cost of a change depends on the size of the
-    // changed object only. Consecutive removals are carried out together, at the next call that uses the remaining
-    // objects.
+    // - Removing an object keeps the handles of all other objects valid.
+    // - The cost of a change depends on the size of the changed object only. Consecutive removals are carried out
+    //   together, at the next call that uses the remaining objects.
     /// Adds a material, which bodies name in BodySettings::material.
     MaterialHandle add_material(const MaterialSettings& material);
     /// Adds a body from a mesh of tetrahedra. The mesh is copied. Overlaps are found later, by settle_start().
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     /// Adds a rigid body from the triangles of its surface; `body.dynamics` must be rigid. The surface consists of one
     /// or several closed shells, for example one for each convex part of a robot link. A shell that is inside out
-    /// bounds a void. Shells may cross each other only if mass, centre of mass and inertia are given, because volumes
-    /// in which shells overlap would count twice.
+    /// bounds a void.
+    ///
+    /// Shells may cross each other only if mass, centre of mass and inertia are given, because a volume in which shells
+    /// overlap would count twice.
     BodyHandle add_body(const SurfaceMesh& surface, const BodySettings& body);
     /// Adds a rigid sphere. Contacts and queries use the exact sphere. Its nodes, faces and tetrahedra are for output
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid or automatic, and
@@ -91,20 +95,23 @@ public:
     /// has no mass. It touches bodies, and no other collider.
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
-    /// follow `motion`. A constant angular velocity rotates the nodes about the point `pivot` [m]. Keys of a motion are
-    /// poses of a frame at absolute times. The nodes move rigidly with this frame, beginning at its pose at the present
-    /// time. For a rigid or implicit body at least three nodes that are not on one line are required. They hold the
-    /// whole rigid body, or the frame of the implicit body. A body that `automatic` made implicit first becomes
-    /// explicit, as by set_dynamics().
+    /// follow `motion`:
+    /// - A constant angular velocity rotates the nodes about the point `pivot` [m].
+    /// - Keys of a motion are poses of a frame at absolute times. The nodes move rigidly with this frame, beginning at
+    ///   its pose at the present time.
+    /// For a rigid or implicit body at least three nodes that are not on one line are required. They hold the whole
+    /// rigid body, or the frame of the implicit body: the rigid motion without its deformation. A body that `automatic`
+    /// made implicit first becomes explicit, as by set_dynamics().
     ///
-    /// `directions`: the nodes are held along these directions only, and are free normal to them (a roller support).
-    /// Directions are fixed in the world, of any nonzero length, and perpendicular to each other. Empty: the nodes are
-    /// held completely. Directions are only for explicit bodies, and for velocities or keys without rotation. Several
-    /// attachments can hold a node if their directions are perpendicular or equal; along equal directions the node
-    /// follows the last attachment. The contact solver satisfies held directions and contacts together, with one
-    /// exception: a contact whose normal lies exactly along a held direction treats the node as free. The contact
-    /// impulse is then too small to stop the other object, and the attachment takes up this impulse. Hold nodes
-    /// completely where objects press on them in this way (docs/methods/sets_and_rollers.md).
+    /// `directions`: the nodes are held along these directions only, and are free normal to them (a roller support;
+    /// docs/methods/sets_and_rollers.md 2). Empty: the nodes are held completely.
+    /// - Directions are fixed in the world, of any nonzero length, and perpendicular to each other. They are only for
+    ///   explicit bodies, and for velocities or keys without rotation.
+    /// - Several attachments can hold a node if their directions are perpendicular or equal. Along equal directions the
+    ///   node follows the last attachment.
+    /// - The contact solver satisfies held directions and contacts together. Exception: a contact whose normal lies
+    ///   exactly along a held direction treats the node as free, so its impulse is too small to stop the other object.
+    ///   Hold nodes completely where objects press on them in this way.
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
     /// Removes an object, and with it the joints, ties and other objects that name it.
@@ -118,10 +125,11 @@ public:
 
     // Running the simulation.
 
-    /// Finds overlaps of bodies and colliders that were added or moved by the user since the last check, and treats the
-    /// overlaps according to Settings::start_overlaps. Every call of advance() begins with this check. Call
-    /// settle_start() earlier to get the result before the first step (WorldReport::start_overlaps). If overlaps are
-    /// refused, throws SceneError and changes nothing.
+    /// Finds overlaps of bodies and colliders that were added or moved by the user since the last check, and treats
+    /// them according to Settings::start_overlaps. If they are refused, throws SceneError and changes nothing.
+    ///
+    /// Every call of advance() begins with this check. Call settle_start() earlier to get the result
+    /// (WorldReport::start_overlaps) before the first step.
     void settle_start();
     /// Advances time by dt >= 0 [s], in equal steps no longer than the stable step. A step that cannot be committed
     /// changes nothing and ends the call; the report names the body and the reason. Throws SceneError if dt is
@@ -132,9 +140,11 @@ public:
     /// advanced further.
     StepReport advance(Real dt, const std::function<bool(const StepReport&)>& go_on);
     /// From now on calls `observe` after every committed step, with the report so far, on the thread that advances.
+    /// Pass an empty function to end the calls.
+    ///
     /// `observe` may read the whole state, but must not change the world. With the integrator leapfrog, the positions
-    /// that it reads are half a step ahead of the velocities. If `observe` throws an exception, the call of advance
-    /// ends between two steps and rethrows it. Pass an empty function to end the calls.
+    /// that it reads are half a step ahead of the velocities. If it throws an exception, the call of advance ends
+    /// between two steps and rethrows it.
     void watch_steps(std::function<void(const StepReport&)> observe);
     /// Simulated time since the world was made [s].
     Real time() const;
@@ -151,10 +161,11 @@ public:
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // node numbers of tetrahedra
     /// Cauchy stress and Green strain of a body, by tetrahedron or by node. The stress is that of the material law
-    /// alone, without the viscous stress (`loss_factor`, `bulk_viscosity`). The value of a tetrahedron is the mean over
-    /// the finite elements that cover it. The value of a node is recovered from the elements around the node, and from
-    /// the traction on the surface (docs/methods/elasticity.md 7.9). At an interface of two materials the stress jumps,
-    /// and a node has the mean of the stresses of both sides.
+    /// alone, without the viscous stress (`loss_factor`, `bulk_viscosity`).
+    /// - Tetrahedron: the mean over the finite elements that cover it.
+    /// - Node: recovered from the elements around the node, and from the traction on the surface
+    ///   (docs/methods/elasticity.md 7.9). At an interface of two materials, where the stress jumps, it is the mean of
+    ///   both sides.
     std::vector<Mat3> stress(BodyHandle body) const;       // Cauchy stress by tetrahedron [Pa]
     std::vector<Mat3> strain(BodyHandle body) const;       // Green strain by tetrahedron
     std::vector<Mat3> node_stress(BodyHandle body) const;  // Cauchy stress by node [Pa]
@@ -169,10 +180,11 @@ public:
     std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // von Mises stress by node [Pa]
     std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // three by node, the largest first [Pa]
     /// Longest step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest
-    /// element that covers the tetrahedron. The shortest of these steps is the stable step of an undeformed body. The
-    /// stable step of a strained body can be longer: elements at the same node share its mass, and less stiff elements
-    /// can leave more of it to a stiff one. To lengthen the stable step of a body, repair its tetrahedra with the
+    /// element that covers the tetrahedron. To lengthen the stable step of a body, repair its tetrahedra with the
     /// shortest steps.
+    ///
+    /// The shortest of these steps is the stable step of an undeformed body. The stable step of a strained body can be
+    /// longer: elements at the same node share its mass, and less stiff elements can leave more of it to a stiff one.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     /// Name of a body (BodySettings::name).
     const std::string& name(BodyHandle body) const;
@@ -216,9 +228,10 @@ public:
     Twist velocity(AttachmentHandle attachment) const;
 
     // Live control (docs/control.md); allowed between calls of advance. In callbacks of advance these functions throw
-    // SceneError. A change updates only the changed object, so its cost does not depend on the size of the world.
-    // Setting an equal value again changes no bit of the state. A refused value changes nothing, and the SceneError
-    // names it.
+    // SceneError.
+    // - A change updates only the changed object, so its cost does not depend on the size of the world.
+    // - Setting an equal value again changes no bit of the state.
+    // - A refused value changes nothing, and the SceneError names it.
     /// Sets the acceleration of gravity [m/s^2]. Sleeping bodies wake.
     void set_gravity(const Vec3& gravity);
     /// Sets the velocities at which a collider, or the nodes of an attachment, move from now on [m/s, rad/s about
@@ -231,10 +244,11 @@ public:
     void move_to(ColliderHandle collider, const Pose& pose, Real duration);
     void move_to(AttachmentHandle attachment, const Pose& pose, Real duration);
     /// Puts a collider or an attachment at another pose at once. Objects on the way are neither pushed nor detected.
-    /// Constant velocities continue from the new pose; keys of a motion and targets of move_to() are dropped.
-    /// Settings::start_overlaps applies to new overlaps. Only the attached nodes jump, so an explicit body is deformed;
-    /// throws SceneError if an element would be inverted. If the attachment holds a rigid body or the frame of an
-    /// implicit body, the whole body moves.
+    /// Settings::start_overlaps applies to new overlaps. Constant velocities continue from the new pose; keys of a
+    /// motion and targets of move_to() are dropped.
+    ///
+    /// Only the attached nodes jump, so an explicit body is deformed; throws SceneError if an element would be
+    /// inverted. If the attachment holds a rigid body or the frame of an implicit body, the whole body moves.
     void set_pose(ColliderHandle collider, const Pose& pose);
     void set_pose(AttachmentHandle attachment, const Pose& pose);
     /// Sets the positions of all nodes of a body, one vector per node [m, world frame]. Velocities do not change, and
@@ -249,28 +263,33 @@ public:
     /// Gives all nodes the velocities of a rigid motion about the centre of mass [m/s, rad/s].
     void set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     /// Changes the kind of a body. Handle, name, settings and shape stay, and the body counts as added last. Centre of
-    /// mass, momentum and angular momentum stay the same up to rounding. A change between explicit and implicit keeps
-    /// the velocities of all nodes. A body that becomes rigid is frozen in its present shape; its vibration is lost.
-    /// When it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes
-    /// explicit starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws
-    /// SceneError for `automatic`; for a body that is attached, has a joint or a given mass, has no tetrahedra, is a
-    /// sphere, capsule or cylinder, or has deformed plastically; for a body with self-contact that is to become rigid
-    /// or implicit; for a body with a set loss factor or plasticity that is to become implicit; and for a body with
-    /// inverted tetrahedra that is to become rigid.
+    /// mass, momentum and angular momentum stay the same up to rounding.
+    /// - Between explicit and implicit: the velocities of all nodes stay, too.
+    /// - To rigid: the body is frozen in its present shape; its vibration is lost. When it becomes explicit or implicit
+    ///   again, its rest shape is still that of its mesh.
+    /// - To explicit: viscous stress starts fully relaxed, as if the body had been in its shape for a long time.
+    /// Throws SceneError for `automatic`, and for a body
+    /// - that is attached, has a joint or a given mass, has no tetrahedra, is a sphere, capsule or cylinder, or has
+    ///   deformed plastically,
+    /// - with self-contact, if it is to become rigid or implicit,
+    /// - with a set loss factor or plasticity, if it is to become implicit,
+    /// - with inverted tetrahedra, if it is to become rigid.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
-    /// its mesh. Plastic flow, viscous strains, sleep, and the stored impulses of its contacts and joints are reset.
-    /// Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even a deformed one in
-    /// which set_dynamics() froze it. Settings::start_overlaps applies to new overlaps.
+    /// its mesh. A rigid body keeps its shape, even a deformed one in which set_dynamics() froze it.
+    ///
+    /// Plastic flow, viscous strains, sleep, and the stored impulses of its contacts and joints are reset. Attached
+    /// nodes are held at their new positions; loads stay. Settings::start_overlaps applies to new overlaps.
     void reset(BodyHandle body);
     void reset(BodyHandle body, const Pose& pose);
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
     void reset();
-    /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
-    /// stay valid; handles of objects that were added to this world after the cloning become stale. However, if objects
-    /// were added to `saved` as well, the handle of an object added to this world may name one of these objects by
-    /// mistake. Threads and callbacks of this world stay. From now on forces are measured if `saved` measures forces,
-    /// and otherwise not.
+    /// Continues from the state of `saved`, which must be a clone() of this world. Threads and callbacks of this world
+    /// stay. From now on forces are measured if and only if `saved` measures forces.
+    ///
+    /// - Handles of objects that `saved` has stay valid.
+    /// - Handles of objects that were added to this world after the cloning become stale. If objects were added to
+    ///   `saved` as well, such a handle may name one of these by mistake.
     void reset(const World& saved);
     /// Sets the external forces on all nodes of a body, one vector per node [N]. They act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
@@ -279,10 +298,11 @@ public:
     MaterialSettings material(MaterialHandle material) const;
     /// Replaces the settings of a material. Bodies of this material keep their shapes and velocities and get new
     /// masses, stable steps and clusters. Elements added as `smoothed` keep the kind that Poisson's ratio determined
-    /// when their body was added. Throws SceneError if the material model would change, if plasticity would appear or
-    /// vanish, if a body of this material would have no stable step, or if an implicit body would get a loss factor
-    /// above 0. If a body of this material has deformed plastically, also throws if elastic values, density or losses
-    /// would change.
+    /// when their body was added. Throws SceneError
+    /// - if the material model would change, or plasticity would appear or vanish,
+    /// - if a body of this material would have no stable step,
+    /// - if an implicit body would get a loss factor above 0,
+    /// - if elastic values, density or losses would change, and a body of this material has deformed plastically.
     void set_material(MaterialHandle material, const MaterialSettings& settings);
     std::vector<MaterialHandle> materials() const;   // handles in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material

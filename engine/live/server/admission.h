@@ -20,10 +20,12 @@ enum class Admission {
     stream,  // the WebSocket
 };
 
-/// Admits the page at /, and the stream at /live?token=TOKEN. Both need the Host 127.0.0.1:PORT or localhost:PORT, so
-/// that a foreign name that resolves to this machine is refused. An Origin header, if there is one, must name the same
-/// host. The stream needs an Origin and the token. Pages of other sites fail because of Host and Origin, and other
-/// users of the machine because of the token.
+/// Admits the page at /, and the stream at /live?token=TOKEN.
+/// - Both need the Host 127.0.0.1:PORT or localhost:PORT, so that a foreign name that resolves to this machine is
+///   refused.
+/// - An Origin header, if there is one, must name the same host. The stream needs an Origin.
+/// - The stream needs the token.
+/// Pages of other sites fail because of Host and Origin, and other users of the machine because of the token.
 Admission admission(const LiveRequest& request, int port, std::string_view token);
 
 /// Returns 128 random bits from the operating system as 32 hexadecimal digits.

@@ -3,9 +3,9 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Second-order elements are divided rather than reduced to their corners. All nodes of the file then remain, and the
-// mesh is much more accurate: the tip of a cantilever of 198 tetrahedra (edges as long as its thickness) sinks 1.0 %
-// less than in beam theory, but 12.8 % less if the mesh keeps the corners only.
+// Second-order elements are divided rather than reduced to their corners, because the mesh is then much more accurate.
+// Example: a cantilever of 198 tetrahedra, with edges as long as its thickness. Its tip sinks 1.0 % less than in beam
+// theory, but 12.8 % less if the mesh keeps the corners only.
 namespace skerry::mesh {
 namespace {
 

@@ -104,8 +104,8 @@ public:
     // -----------------------------------------------------------------------------------------------------------------
 
     /// Returns a row count that was read from the file. Throws SceneError if the count is negative or at least 2^29, or
-    /// if the rest of the file is too short for so many rows of at least `bytes` bytes. Without this check a wrong
-    /// count could make the program allocate far more memory than the file has bytes.
+    /// if the rest of the file is too short for so many rows of at least `bytes` bytes. This check prevents huge
+    /// allocations because of a wrong count.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
     /// Throws SceneError unless the number is finite.
     Real finite(Real value, const char* field) const;

@@ -83,8 +83,8 @@ void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMe
 void add_middle_nodes(RawMesh& mesh);
 
 /// Divides each tetrahedron of second order into eight linear ones, and each triangle of second order into four. The
-/// parts use all nodes of the divided element. They get its label and its vectors, and replace it in its sets. Adds a
-/// sentence about the division to `notes`.
+/// parts use all nodes of the element, get its label and vectors, and replace it in its sets. Adds a sentence about the
+/// division to `notes`.
 void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.

@@ -263,8 +263,8 @@ private:
         return found->second;
     }
 
-    /// Appends to `to` the members that an entry of a row names: a single one by its number, or all members of an
-    /// earlier set by the name of the set. The name of an instance and a dot may precede the number or the name.
+    /// Appends to `to` the members that an entry of a row names. The entry is the number of one member, or the name of
+    /// an earlier set with all its members. The name of an instance and a dot may precede it.
     void add_members(const std::string& entry, const AbaqusScope& scope, const Sets& sets,
                      std::vector<std::size_t>& to) {
         const auto begins_number = [](std::string_view text) {
@@ -417,8 +417,9 @@ private:
             if (!set.internal) mesh_.sets[set.name].nodes.assign(set.members.begin(), set.members.end());
     }
 
-    /// Adds the element sets to the mesh. If a node set of the same name consists of exactly the nodes of the elements,
-    /// the element set replaces it. If it has other nodes, "_elements" is appended to the name of the element set.
+    /// Adds the element sets to the mesh. If a node set has the same name, its nodes decide: if they are exactly the
+    /// nodes of the elements, the element set replaces it; otherwise "_elements" is appended to the name of the element
+    /// set.
     void take_element_sets() {
         for (const auto& [key, set] : element_sets_) {
             if (set.internal) continue;

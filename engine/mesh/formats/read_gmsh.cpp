@@ -148,9 +148,8 @@ void require_end(FileReader& reader, const std::string& mark) {
                         "if the section has more rows than its header announces, correct the count in the header");
 }
 
-/// Sets the label of each tetrahedron to the number of its physical group, because users choose these numbers. If no
-/// tetrahedron is in a group, the labels are the numbers of the geometric volumes. Sets no labels at all if one of the
-/// numbers does not fit 32 bits.
+/// Sets the label of each tetrahedron to the number of its physical group, which users choose. If no tetrahedron is in
+/// a group, uses the numbers of the geometric volumes. Sets no labels if one of the numbers does not fit 32 bits.
 void label(GmshMesh& mesh) {
     const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
     std::vector<int> labels;

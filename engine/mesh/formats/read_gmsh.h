@@ -54,10 +54,12 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
 /// higher order.
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
-/// Adds a tetrahedron or triangle to the mesh; an element of another type is only counted. Adds the tetrahedron, the
-/// triangle or (for another type) the nodes to the physical groups with the numbers `groups`. If a tetrahedron is in
-/// several groups, a file of version 2 has a row for each group; the second and later rows do not add the tetrahedron
-/// to the mesh again. Throws SceneError if one of the nodes does not exist.
+/// Adds an element to the mesh and to its physical groups, whose numbers are `groups`. Throws SceneError if one of the
+/// nodes does not exist.
+/// - A tetrahedron or triangle is added to the mesh and to the groups.
+/// - An element of another type is only counted; its nodes are added to the groups.
+/// - In files of version 2, a tetrahedron in several groups has a row for each group. Its second and later rows do not
+///   add it to the mesh again.
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
                        GmshMesh& mesh);

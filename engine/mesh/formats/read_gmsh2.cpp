@@ -112,9 +112,9 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh
                       reader, mesh);
 }
 
-/// Reads a block of a binary file: a header, then elements that all have the type and the number of tags given in the
-/// header. `count`: number of elements of the section. `done`: number of those in earlier blocks. Returns the number of
-/// elements of the block.
+/// Reads a block of a binary file, and returns the number of its elements. A block is a header, followed by elements
+/// that all have the type and the number of tags given in the header. `count`: number of elements of the section.
+/// `done`: number of those in earlier blocks.
 std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers,
                               GmshMesh& mesh) {
     const auto type = reader.binary<std::int32_t>("type");

@@ -78,8 +78,8 @@ void require_total(const FileReader& reader, std::size_t found, std::int64_t ann
 }
 
 /// Reads a block of `rows` nodes: first the numbers of all nodes, then their positions. Each position is followed by
-/// `parameters` parametric coordinates, which are skipped. `range`: smallest and largest node number so far, to be
-/// updated. `total`: number of nodes in the file.
+/// `parameters` parametric coordinates, which are skipped. `total`: number of nodes in the file. `range`: smallest and
+/// largest node number so far, to be updated.
 void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total,
                      NodeNumbers& numbers, std::array<std::int64_t, 2>& range, GmshMesh& mesh) {
     const std::size_t first = mesh.nodes.size();

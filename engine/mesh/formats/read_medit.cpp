@@ -4,9 +4,11 @@
 #include "engine/mesh/formats/raw_mesh.h"
 
 // Reader of Medit meshes, text (.mesh) and binary (.meshb, file versions 1 to 4). It reads vertices, tetrahedra and
-// triangles of first and second order with their references, counts other elements and skips all other sections. It
-// refuses tetrahedra of third or higher order. Format: P. Frey, "Medit: an interactive mesh visualization software",
-// INRIA RT-0253, 2001; L. Marechal, "The libMeshb library".
+// triangles of first and second order with their references. It counts other elements, skips all other sections, and
+// refuses tetrahedra of third or higher order.
+//
+// Format: P. Frey, "Medit: an interactive mesh visualization software", INRIA RT-0253, 2001; L. Marechal, "The libMeshb
+// library".
 namespace skerry::mesh {
 namespace {
 

@@ -88,9 +88,11 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     require_end(reader, "nodes");
 }
 
-/// Conversion of the node order of a row of the file .ele: tetgen_order[a] is the index of its node a in the order of
-/// this engine, which is the four corners, then RawMesh::middle. With its option -o2 TetGen lists the nodes in the
-/// middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its tables edge2ver, orgpivot and destpivot).
+/// Conversion of the node order of TetGen: node a in a row of the file .ele has the number tetgen_order[a] in the order
+/// of this engine, which is the four corners, then RawMesh::middle.
+///
+/// With its option -o2 TetGen lists the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners
+/// (its tables edge2ver, orgpivot and destpivot).
 constexpr std::array<std::size_t, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {

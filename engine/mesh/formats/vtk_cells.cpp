@@ -73,9 +73,10 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
 
 namespace {
 
-/// Calls add(set, row) for each row of an array whose value is not 0. An array with only the values 0 and 1 makes one
-/// set, which has the name of the array. Any other array makes a set for each of its values except 0. But if no value
-/// occurs twice, the array only numbers its rows, and makes no set.
+/// Calls add(set, row) for each row of an array whose value is not 0. The values determine the sets:
+/// - only 0 and 1: one set with the name of the array,
+/// - no value occurs twice: no set, because the array only numbers its rows,
+/// - otherwise: a set for each value except 0.
 void for_each_member(const VtkArray& array, RawMesh& mesh, auto&& add) {
     const std::set<int> values(array.value.begin(), array.value.end());
     const bool is_flag = std::ranges::all_of(values, [](int value) { return value == 0 || value == 1; });

@@ -14,10 +14,11 @@ struct PartedMesh {
 };
 
 /// Splits nodes at which several fans meet. A fan is a set of tetrahedra at a node that are connected through faces
-/// with this node. If a node has several fans, each fan except the first gets a new node at the same position. The
-/// boundary then has one ring of triangles at each of these nodes, and touches itself there. The shape of the
-/// tetrahedra is unchanged. Old nodes keep their indices, and new nodes are appended. Tetrahedra that share only an
-/// edge stay connected there if they belong to the same fan at both ends of the edge.
+/// with this node. Each fan except the first gets a new node at the same position. The boundary then touches itself
+/// there, with one ring of triangles at each of these nodes.
+///
+/// - The shape of the tetrahedra is unchanged. Old nodes keep their indices, and new nodes are appended.
+/// - Tetrahedra that share only an edge stay connected there if they belong to the same fan at both ends of the edge.
 PartedMesh part_fans(const Mesh& mesh);
 
 }  // namespace skerry::mesh

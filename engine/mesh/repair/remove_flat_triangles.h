@@ -17,12 +17,14 @@ struct RepairedSurface {
 };
 
 /// Repairs the triangles whose smallest altitude is below `altitude`, the flattest first, by collapsing or flipping one
-/// of their edges. Of the possible changes, it makes the one after which the smallest altitude of the changed triangles
-/// is largest. A triangle that no change improves is left. Every change preserves the topology (link condition: Dey,
-/// Edelsbrunner, Guha, Nekhayev, Topology preserving edge contraction, 1999) and the orientation of triangles. The old
-/// and the new surface stay within the tolerance of each other. The surface must be closed, with two triangles at every
-/// edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness of the body. The
-/// result is deterministic.
+/// of their edges. The surface must be closed, with two triangles at every edge. The result is deterministic.
+///
+/// - Choice: the change after which the smallest altitude of the changed triangles is largest. A triangle that no
+///   change improves is left.
+/// - Every change preserves the orientation of triangles and the topology (link condition: Dey, Edelsbrunner, Guha,
+///   Nekhayev, Topology preserving edge contraction, 1999).
+/// - The old and the new surface stay within the tolerance of each other. Self-intersections are not checked: they do
+///   not occur with a tolerance below the thickness of the body.
 RepairedSurface remove_flat_triangles(const SurfaceMesh& surface, const RepairSettings& settings);
 
 }  // namespace skerry::mesh

@@ -19,9 +19,9 @@ Real mean_edge(const SurfaceMesh& surface);
 /// Area [m^2].
 Real area_of(const SurfaceMesh& surface);
 
-/// Volume inside a closed surface by the divergence theorem, negative if its triangles are clockwise as seen from
-/// outside [m^3]. Positions are measured from a point of the surface, so that the rounding error does not grow with the
-/// distance of the surface from the origin.
+/// Volume inside a closed surface by the divergence theorem [m^3]. It is negative if the triangles are clockwise as
+/// seen from outside. Positions are measured from a point of the surface, so that the rounding error does not grow with
+/// the distance from the origin.
 Real volume_inside(const SurfaceMesh& surface);
 
 /// Length of the diagonal of the bounding box of the nodes [m].

@@ -8,9 +8,11 @@
 namespace skerry::mesh {
 namespace {
 
-/// Builds a ball from an icosahedron. Its centre and its 20 faces form 20 nearly regular tetrahedra (sectors). Each
-/// sector is divided into n^3 tetrahedra, where n is the number of shells. The nodes of each shell are moved onto a
-/// sphere; shell s has 10 s^2 + 2 nodes. With its six fivefold axes the mesh has no preferred grid direction.
+/// Builds a ball from an icosahedron. Its centre and its 20 faces form 20 nearly regular tetrahedra (sectors). With the
+/// number n of shells, each sector is divided into n^3 tetrahedra, and the 10 s^2 + 2 nodes of shell s are moved onto a
+/// sphere.
+///
+/// The mesh has six fivefold axes, and so no preferred grid direction.
 class BallBuilder {
 public:
     BallBuilder(Real radius, int shells) : radius_(radius), shells_(shells) {

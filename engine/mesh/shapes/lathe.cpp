@@ -40,7 +40,7 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
 }
 
 /// Returns the z coordinates of the ends of the outline and of its sharp kinks, in ascending order. If kinks are closer
-/// together than least_layer * spacing, only the sharpest is used. A kink as close as this to an end is not used.
+/// together than least_layer * spacing, only the sharpest is used; a kink as close to an end is not used.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;

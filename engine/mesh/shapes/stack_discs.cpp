@@ -10,9 +10,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Numbering of the nodes of a disc: the centre, then ring after ring, each counter-clockwise from the x axis. The first
-// nodes of all discs have the same numbers for any number of rings, so node n of a disc lies above node n of the disc
-// below.
+// Numbering of the nodes of a disc: the centre, then ring after ring, each counter-clockwise from the x axis. The
+// number of a node does not depend on the number of rings, so node n of a disc lies above node n of the disc below.
 int ring_begin(int ring) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
@@ -23,11 +22,9 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The colours of the two nodes below
-/// the rectangular side face (wall) of a prism determine the diagonal of this wall, so the prisms on both sides of it
-/// agree. The nodes are connected as in a hexagon cut out of the triangular lattice with the axes p and q. In this
-/// lattice, (p - q) mod 3 is such a colouring. All six sectors of the disc are treated alike, so the mesh does not
-/// favour one sense of rotation.
+/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The colours of the two lower nodes
+/// of a wall (rectangular side face of a prism) determine its diagonal, so the prisms on both sides of it agree. All
+/// six sectors are treated alike, so the mesh does not favour one sense of rotation.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
@@ -35,6 +32,8 @@ std::vector<int> paint_nodes(int rings) {
         for (int ring_index = 0; ring_index < 6 * ring; ++ring_index) {
             const auto sector = static_cast<std::size_t>(ring_index / ring);
             const std::array<int, 2>&out = direction[sector], &along = direction[(sector + 2) % 6];
+            // The nodes are connected as in a hexagon cut out of the triangular lattice with the axes p and q. In this
+            // lattice, (p - q) mod 3 differs between neighbours.
             const int p = ring * out[0] + ring_index % ring * along[0],
                       q = ring * out[1] + ring_index % ring * along[1];
             colour[static_cast<std::size_t>(node_on_ring(ring, ring_index))] = ((p - q) % 3 + 3) % 3;
@@ -101,9 +100,9 @@ private:
             [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
     }
 
-    /// True if the diagonal of the wall (rectangular side face of a prism) over the edge (`from`, `to`) rises from
-    /// `from` to `to`. In even layers it rises towards the node of higher colour, in odd layers towards the node of
-    /// lower colour.
+    /// True if the diagonal of a wall (rectangular side face of a prism) rises from `from` to `to`, the lower edge of
+    /// the wall. In even layers it rises towards the node of higher colour, in odd layers towards the node of lower
+    /// colour.
     bool diagonal_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }

@@ -14,9 +14,11 @@
 namespace skerry::mesh {
 namespace {
 
-/// Finds given triangles that cannot lie where two closed shells touch, because there an even number of triangles meet
-/// at each edge. Divides the triangles for which `given` is true into patches that are connected by edges. Returns true
-/// for all triangles of a patch if one of its edges has an odd number of triangles of the surface, not counting
+/// Returns true for the triangles that cannot lie where two closed shells touch, because there an even number of
+/// triangles meet at each edge.
+///
+/// Only triangles for which `given` is true are tested. They are divided into patches, which are connected by edges.
+/// The result is true for a whole patch if one of its edges has an odd number of triangles of the surface, not counting
 /// `dropped` ones.
 std::vector<bool> patches_with_odd_edge(Triangles triangles, const std::vector<bool>& given,
                                         const std::vector<bool>& dropped) {
@@ -43,8 +45,8 @@ std::vector<bool> patches_with_odd_edge(Triangles triangles, const std::vector<b
 }
 
 /// Orients the triangles of each patch like most of them. A patch consists of triangles that are connected by edges
-/// with exactly two triangles. A one-sided patch (Moebius strip) is left as it is. Returns the first triangle of each
-/// one-sided patch.
+/// with exactly two triangles. One-sided patches (Moebius strips) are left as they are; the function returns the first
+/// triangle of each.
 std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     std::vector<std::array<Index, 3>>& triangles = report.cleaned.triangles;
     // Each triangle has two entries: one for its present and one for its opposite orientation. Entries of neighbours
@@ -88,9 +90,11 @@ std::vector<Index> orient(SurfaceReport& report, std::span<const Side> sides) {
     return one_sided;
 }
 
-/// Handles an edge with four or more triangles, at which several solids touch. Finds the two triangles that bound each
-/// solid there, and calls visit(a, b) with the sides (Side) of these two triangles at the edge. Half of all sides at
-/// the edge must lead from one end to the other, and half of them back. Returns true if solids overlap at the edge.
+/// Finds the two triangles that bound each solid at an edge at which several solids touch. Calls visit(a, b) with the
+/// sides (Side) of these two triangles at the edge. Returns true if solids overlap at the edge.
+///
+/// The edge must have at least four triangles. Half of their sides must lead from one end to the other, and half of
+/// them back.
 bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto&& visit) {
     const auto at = [&](Index n) -> const Vec3& { return surface.nodes[static_cast<std::size_t>(n)]; };
     const Vec3 &low = at(edge[0].node[0]), along = (at(edge[0].node[1]) - low).normalized();

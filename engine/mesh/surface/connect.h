@@ -5,16 +5,18 @@
 
 namespace skerry::mesh {
 
-/// Drops triangles with the same nodes as an earlier triangle, if they have its orientation. Triangles of opposite
-/// orientation can also be right, where two closed shells touch. They are divided into patches that are connected by
-/// edges. A patch is kept if an even number of triangles of the surface meet at each of its edges, as in closed shells;
-/// otherwise it is dropped. Returns one entry for each remaining triangle: the number (see SurfaceReport::number) of
+/// Drops duplicate triangles. Returns one entry for each remaining triangle: the number (see SurfaceReport::number) of
 /// the first dropped triangle that repeated it, or no_index.
+///
+/// - A triangle with the nodes and the orientation of an earlier one is dropped.
+/// - A triangle with the nodes of an earlier one, but the opposite orientation, can be right, where two closed shells
+///   touch. Such triangles are divided into patches that are connected by edges. A patch is kept if an even number of
+///   triangles of the surface meet at each of its edges, as in closed shells; otherwise it is dropped.
 std::vector<Index> drop_duplicates(SurfaceReport& report);
 
-/// Turns triangles of `report.cleaned` so that triangles connected by edges have the orientation that most of them
-/// have, and divides the triangles into shells. Reports holes, branching edges, pinched nodes, shells without an
-/// orientation, and edges at which shells overlap. These faults replace those that an earlier call reported.
+/// Orients the triangles of `report.cleaned`, each like most triangles connected to it by edges, and divides them into
+/// shells. Reports holes, branching edges, pinched nodes, shells without an orientation, and edges at which shells
+/// overlap. These faults replace those that an earlier call reported.
 void connect(SurfaceReport& report);
 
 /// Keeps the triangles of `report.cleaned` for which keeps(row) is true.

@@ -48,10 +48,11 @@ Real least_altitude(const Points& x) {
 
 enum class PairFault { none, crossing, overlap };
 
-/// Tests two triangles by separating axes (Gottschalk, Lin, Manocha 1996): two convex shapes are apart if and only if
-/// their projections on at least one of certain axes are apart. Triangles that share only a corner or an edge do not
-/// overlap, because on some axis their projections only touch. `tolerance`: largest overlap that counts as rounding
-/// error [m].
+/// Tests whether two triangles cross, or overlap in one plane, by separating axes (Gottschalk, Lin, Manocha 1996): two
+/// convex shapes are apart if and only if their projections on at least one of certain axes are apart. Triangles that
+/// share only a corner or an edge do not overlap, because on some axis their projections only touch.
+///
+/// `tolerance`: largest overlap that counts as rounding error [m].
 PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
     // Smallest sine of the angle between two sides, |a x b| / (|a| |b|), for which the direction of a x b is reliable.
     constexpr Real parallel = 1e-9;

@@ -89,8 +89,8 @@ std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSi
 }
 
 /// Returns 1 or -1: the side of the line from `p` to `q` on which `x` lies, seen along the x axis. A point on the line
-/// counts as lying on one fixed side of it, whichever triangle the line belongs to. Thus exactly one of two triangles
-/// at an edge contains the point.
+/// counts as lying on one fixed side of it for both triangles at the edge, so that exactly one of them contains the
+/// point.
 int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
     const bool swapped = q.z() < p.z() || (q.z() == p.z() && q.y() < p.y());
     const Vec3 &a = swapped ? q : p, &b = swapped ? p : q;

@@ -5,10 +5,11 @@
 
 namespace skerry::mesh {
 
-/// Drops shells that repeat an earlier one, and reports them. Shells are equal if they are at most `distance` apart
-/// [m]. Unless `keep_walls`, this limit is larger for shells of the same orientation: a thousandth of their diagonal.
-/// With `keep_walls` such shells are kept, because they may be the two sides of a thin wall. Returns true if shells
-/// were dropped; then call connect() again.
+/// Drops shells that repeat an earlier one, and reports them. Returns true if shells were dropped; then call connect()
+/// again. A shell repeats another one if the two are at most this far apart [m]:
+/// - `distance`,
+/// - or, for shells of the same orientation, a thousandth of their diagonal if that is larger. With `keep_walls` this
+///   second limit is not used, because such shells may be the two sides of a thin wall.
 bool drop_repeated_shells(SurfaceReport& report, Real distance, bool keep_walls);
 
 /// Computes the volumes of closed shells, and finds for each shell the smallest shell around it. Reverses each shell

@@ -8,10 +8,10 @@
 namespace skerry::mesh {
 namespace {
 
-/// Joins nodes that are up to `distance` apart. Only nodes within `distance` of each other along a fixed direction are
-/// compared. Few nodes are, because this direction is not normal to the planes of usual grids; all nodes of a plane
-/// normal to it would be compared with each other.
+/// Joins nodes that are up to `distance` apart. Only nodes that are within `distance` of each other along `direction`
+/// are compared.
 void join_close_nodes(std::span<const Vec3> nodes, Real distance, UnionFind& joined) {
+    // The direction is not normal to the planes of usual grids: all nodes of such a plane would be compared.
     const Vec3 direction(0.41, 0.57, 0.71205);
     std::vector<std::pair<Real, Index>> along;
     along.reserve(nodes.size());

@@ -7,10 +7,12 @@ namespace skerry::mesh {
 
 namespace {
 
-// Ratio of the true to the computed excess, where the excess is the bending energy of the elements minus the exact
-// energy. The computed excess is too large: it puts the nodes at the positions of exact bending, while free nodes find
-// a state of lower energy. In static solutions of strips of one or two layers of cells the ratio is 0.65 to 1; it is
-// smallest for strips that are two flat cells wide.
+// Share of the computed excess of bending energy (energy of the elements minus exact energy) that remains in a static
+// solution. The excess is computed with all nodes at the positions of exact bending; free nodes find a state of lower
+// energy.
+//
+// In strips of one or two layers of cells the share is 0.65 to 1, with the smallest value for a width of two flat
+// cells.
 constexpr Real remaining_excess = 0.8;
 
 /// Displacements of pure bending (Saint-Venant) with a curvature of 1 per metre. The neutral axis crosses the column,
@@ -132,9 +134,11 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
                 visit(e, row, elements.part[e] == ElementPart::volume ? 1U : 0U);
             }
     };
-    // For each tetrahedron: number of elements that include it and carry the shear part of the stress or both parts
-    // (entry 0), and number of those that carry only the volumetric part (entry 1). The volume is divided equally among
-    // the elements of each kind.
+    // For each tetrahedron, the numbers of elements that include it, by the part of the stress that they carry:
+    // - entry 0: the shear part or both parts,
+    // - entry 1: only the volumetric part.
+    //
+    // The volume of the tetrahedron is divided equally among the elements of each entry.
     std::vector<std::array<int, 2>> covered(nearby.tetrahedra.size(), {0, 0});
     for_each_share([&](std::size_t, std::size_t row, std::size_t kind) { ++covered[row][kind]; });
     for_each_share([&](std::size_t e, std::size_t row, std::size_t kind) {
@@ -148,8 +152,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
         }
     });
 
-    // Mean over each part. The bending moment is about the same in all columns, so the curvature of a column is
-    // proportional to its compliance (exact/found). Therefore the compliances are averaged, weighted by exact energy. A
+    // Relative bending stiffness of each part, from the mean compliance (exact / element_energy) of its columns,
+    // weighted by exact energy. Compliances are averaged because all columns carry about the same bending moment. A
     // mean of the stiffnesses would be dominated by a few slivers.
     std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {

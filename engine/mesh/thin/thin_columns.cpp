@@ -14,9 +14,8 @@ namespace {
 // Greatest thickness of a thin column, as a multiple of the mean edge length of its tetrahedra. If each cubic cell has
 // six tetrahedra, two layers of cells have the ratio 1.6 and count as thin; three layers have 2.4 and do not.
 constexpr Real thickest = 2;
-// Lower limit of the cosine of the angle between the ray and the outer normal of the triangle through which the ray
-// leaves (18 degrees). At a larger angle the two sides form a wedge, such as the rim of a fin, which is not treated as
-// thin.
+// Lower limit of the cosine of the angle at which a ray leaves, measured from the outer normal of the triangle (18
+// degrees). At a larger angle the two sides form a wedge, such as the rim of a fin, which is not treated as thin.
 constexpr Real least_exit_cosine = 0.95;
 
 /// The face of a tetrahedron opposite to `corner` (0 to 3).

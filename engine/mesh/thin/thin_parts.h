@@ -28,13 +28,14 @@ struct ThinPart {
     Real stiffness = 1;
 };
 
-/// Returns the thin parts of a mesh, whose tetrahedra must have positive volumes. `boundary`: boundary triangles of the
-/// mesh. `zones`: elements of the body; MaterialZone::material is an index into `materials`.
+/// Returns the thin parts of a mesh. Each has an estimate of its stiffness in pure bending relative to the exact one,
+/// from the elastic energies (docs/methods/elasticity.md 7.8). All tetrahedra must have positive volumes.
 ///
-/// A ray is followed from each boundary triangle along its inner normal. The mesh is thin there if the ray leaves it
-/// within two mean edge lengths, through a triangle nearly perpendicular to the ray. Neighbouring triangles of this
-/// kind form a part. The stiffness is the elastic energy of the elements in pure bending of the part, divided by the
-/// exact energy (docs/methods/elasticity.md 7.8).
+/// The mesh is thin at a boundary triangle if a ray along the inner normal leaves it within two mean edge lengths,
+/// through a triangle nearly perpendicular to the ray. A part consists of neighbouring triangles of this kind.
+///
+/// - `boundary`: boundary triangles of the mesh.
+/// - `zones`: elements of the body; MaterialZone::material is an index into `materials`.
 std::vector<ThinPart> thin_parts(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary,
                                  std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials);
 

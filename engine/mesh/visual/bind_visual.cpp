@@ -38,9 +38,8 @@ public:
         boxes_ = BoxTree(boxes);
     }
 
-    /// Material point that a point of the visual surface follows. `normal`: normal of the visual surface at this point.
-    /// A point outside of the body follows the nearest triangle that faces the same way, so that surfaces on both sides
-    /// of a gap follow different sides. If there is no such triangle nearby, the point follows the nearest triangle.
+    /// Material point that a point of the visual surface follows: the point itself if it lies in a tetrahedron,
+    /// otherwise the nearest point of a boundary triangle. `normal`: normal of the visual surface at the point.
     MaterialPoint nearest(const Vec3& place, const Vec3& normal) const {
         // Margin for rounding errors of barycentric coordinates. Without it, a point on a common face could be outside
         // of both tetrahedra.
@@ -58,6 +57,8 @@ public:
                                 inside = point;
                             });
         if (best > -rounding) return inside;
+        // A nearby triangle that faces the same way is preferred, so that surfaces on both sides of a gap follow
+        // different sides.
         mesh::NearestTriangle found = tree_.nearest_facing(place, normal, reach_ * reach_);
         if (found.triangle == no_index) found = tree_.nearest(place);
         if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // only if squared distances overflow
@@ -100,9 +101,9 @@ Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
     return place;
 }
 
-/// Terms of the deformation gradients at those nodes for which `is_needed` is true. In a tetrahedron, volume times
-/// deformation gradient is the sum of x a^T / 3 over its corners. x: position of the corner. a: inward area vector of
-/// the opposite face at rest.
+/// Terms of the deformation gradients F at those nodes for which `is_needed` is true. In a tetrahedron of volume V,
+/// with corners at x and inward area vectors a of the opposite faces at rest, V F is the sum of x a^T / 3 over the
+/// corners.
 Ragged<GradientTerm> gradients_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                   const std::vector<bool>& is_needed) {
     std::vector<std::vector<GradientTerm>> terms(nodes.size());

@@ -18,12 +18,16 @@ struct GradientTerm {
     Vec3 gradient;  // [1/m]
 };
 
-/// A visual surface, each node of which follows a material point p of the body. The position of the node is p + F d. F:
-/// deformation gradient at p. d: offset of the node from p at rest. At rest, p is the point of the body nearest to the
-/// node. But if the node is outside of a deformable body, and boundary triangles that face the same way as the visual
-/// surface are near, p is the nearest point of these triangles. F at p is interpolated between nodes of the body. At a
-/// node of the body, F is the mean over the adjacent tetrahedra, weighted by volume. For a rigid body F comes from one
-/// tetrahedron of nodes that are far apart. All node numbers are local to the body.
+/// A visual surface, each node of which follows a material point p of the body. The position of the node is p + F d,
+/// with the deformation gradient F at p, and the offset d of the node from p at rest.
+///
+/// - p is the point of the body nearest to the node at rest. If a node is outside of a deformable body, and boundary
+///   triangles that face the same way as the visual surface are near, p is the nearest point of these triangles.
+/// - F of a deformable body is interpolated between its nodes. At a node, F is the mean over the adjacent tetrahedra,
+///   weighted by volume.
+/// - F of a rigid body comes from one tetrahedron of nodes that are far apart.
+///
+/// All node numbers are local to the body.
 struct BoundVisual {
     VisualSurface surface;
     VisualFit fit;

@@ -48,9 +48,11 @@ struct CrateFile::Tables {
     std::vector<std::int32_t> field_token, field_sets;
     std::vector<CrateValue> field_value;
     std::vector<std::int32_t> spec_path, spec_fields, spec_kind;
-    // Paths in depth-first order: index of the path, token of its last element (negative for a property), and distance
-    // in this table to the next sibling. Three values of the distance have a special meaning. -2: no child and no next
-    // sibling. -1: a child, but no next sibling. 0: a next sibling, but no child.
+    // Paths in depth-first order, with three values each:
+    // - path_number: index of the path,
+    // - path_token: token of its last element, negative for a property,
+    // - path_jump: distance in this table to the next sibling. Special values are 0 (a next sibling, but no child), -1
+    //   (a child, but no next sibling) and -2 (neither).
     std::vector<std::int32_t> path_number, path_token, path_jump;
 };
 
@@ -169,9 +171,8 @@ CrateValue CrateFile::times(std::span<const double> times) {
 CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue> values) {
     align();
     const CrateValue value = stored(CrateType::time_samples, size_);
-    // The format has an offset before the times and one before the values. The offset is the distance from itself to
-    // the entry that it belongs to, so that data can stand between the two. Here the data are stored elsewhere, and
-    // each offset only skips its own 8 bytes.
+    // An offset precedes the times, and another one the values. Each is the distance from itself to its entry, so that
+    // data can stand between the two. Here the data are stored elsewhere, and an offset skips only its own 8 bytes.
     constexpr auto next = static_cast<std::int64_t>(sizeof(std::int64_t));
     put(next);
     put(times);

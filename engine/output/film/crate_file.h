@@ -50,9 +50,9 @@ struct CrateSpec {
     std::vector<CrateSpec> children{};
 };
 
-/// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Each value is written to the file
-/// at once, so that memory holds only its CrateValue (8 bytes). The format requires that its tables are LZ4 blocks.
-/// They are written without compression, because they are short compared with the values.
+/// Writes a crate file of version 0.8.0, which every program with OpenUSD reads since 2018. Each value is written at
+/// once, so that memory holds only its CrateValue (8 bytes). The tables must be LZ4 blocks, but are written without
+/// compression, because they are short compared with the values.
 class CrateFile {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.

@@ -61,8 +61,7 @@ std::size_t nearest_drawn(const BodyFrame& body, std::span<const Real> area, con
 }
 
 /// Contact pressure by body and node: sum of the normal forces of the contacts at the node, divided by the surface area
-/// that belongs to the node [Pa]. Some bodies have contacts at nodes inside the drawn surface (core nodes of round
-/// bodies). Such a force is added at the drawn node nearest to the contact point.
+/// that belongs to the node [Pa].
 std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
     std::vector<std::vector<Real>> pressure, area;
     std::map<BodyHandle, std::size_t> number;
@@ -77,6 +76,7 @@ std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
             if (contact.weight[a] == 0 || found == number.end()) continue;
             const std::size_t b = found->second;
             auto node = static_cast<std::size_t>(contact.node[a]);
+            // Contacts of round bodies act on core nodes, which lie inside the drawn surface.
             if (area[b][node] == 0) node = nearest_drawn(frame.bodies[b], area[b], contact.point, node);
             pressure[b][node] += std::abs(contact.weight[a] * contact.force().dot(contact.normal));
         }

@@ -19,9 +19,10 @@
 namespace skerry {
 
 /// Writes one prim of type Mesh for each body and each collider. Vertices are relative to the transform of the prim, so
-/// that the rounding errors of floats do not grow with the distance from the origin of the world. The transform of a
-/// rigid body moves with the body, so its vertices are written again only if its shape changes. A value that has not
-/// changed since the previous frame takes only 8 bytes.
+/// that rounding errors of floats do not grow with the distance from the origin of the world.
+///
+/// The transform of a rigid body moves with the body, so its vertices are written again only if its shape changes. An
+/// unchanged value takes only 8 bytes per frame.
 class UsdFilm {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.

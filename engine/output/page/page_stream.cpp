@@ -72,9 +72,8 @@ std::string_view PageStream::pack(const Frame& frame) {
     return bytes_;
 }
 
-/// Collects the values of a body at the vertices that the page draws, and widens the value scales so that they include
-/// these values. All bodies of a frame must be measured before the first body is packed, because a frame has one scale
-/// per field, which must include the values of all bodies.
+/// Collects the values of a body at the vertices that the page draws, and widens the value scales to include them. Must
+/// be called for all bodies of a frame before the first one is packed, because a scale applies to the whole frame.
 void PageStream::measure_body(const BodyFrame& body, BodyValues& values) {
     SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.node_strain.size() &&
                  (body.node_mesh_error.empty() || body.node_mesh_error.size() == body.node_stress.size()) &&

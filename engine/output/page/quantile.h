@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// Histogram of positive values with bins that are 2 % wide (the upper end of a bin is 2 % above its lower end). Its
-/// quantile, which includes nearly all values, serves as the upper end of a legend, so that a single extreme value does
-/// not stretch the legend.
+/// Histogram of positive values, whose quantiles serve as upper ends of legends. A quantile that excludes the few
+/// largest values keeps a single extreme value from stretching the legend. Each bin is 2 % wide, relative to its lower
+/// end.
 class Quantile {
 public:
     void add(Real value) {

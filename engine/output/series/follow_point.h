@@ -11,10 +11,10 @@
 
 namespace skerry {
 
-/// Returns the corners of the tetrahedron that contains the position `point`, and the barycentric coordinates of this
-/// position. If no tetrahedron contains the position, returns the nearest node, or nothing if this node is farther away
-/// than `reach` [m]. A body without tetrahedra is rigid: any position moves with it, and is given by coordinates with
-/// respect to four of its nodes.
+/// Returns a material point at the position `point`, as nodes and barycentric coordinates:
+/// - in a body with tetrahedra: the corners of the tetrahedron that contains the position. Otherwise the nearest node,
+///   or nothing if this node is farther away than `reach` [m].
+/// - in a body without tetrahedra, which is rigid: four nodes of the body, for any position.
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& point, Real reach);
 

@@ -17,11 +17,15 @@ namespace skerry {
 /// True if `file_name` is the name of a file that a series called `name` may write.
 bool is_series_file(std::string_view file_name, std::string_view name);
 
-/// Writes up to five files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp, NAME_colliders_0000.vtp if a
-/// collider was added, removed or moved, NAME_lines_0000.vtp if the series has had joints, ties, cables or springs, and
-/// NAME_visual_0000.vtp if a body has a visual surface. The index NAME.pvd lists the files by time. Bodies, colliders
-/// and lines are numbered in the order of their first appearance, and their numbers never change. Before the first
-/// frame is written, the files of an earlier series with the same name are removed, and no other files. Throws
+/// Writes up to five files for each frame, and the index NAME.pvd, which lists the files by time:
+/// - NAME_bodies_0000.vtu,
+/// - NAME_contacts_0000.vtp,
+/// - NAME_colliders_0000.vtp if a collider was added, removed or moved,
+/// - NAME_lines_0000.vtp if the series has had joints, ties, cables or springs,
+/// - NAME_visual_0000.vtp if a body has a visual surface.
+///
+/// Bodies, colliders and lines are numbered in the order of their first appearance, and their numbers never change. The
+/// files of an earlier series with the same name, and no others, are removed before the first frame is written. Throws
 /// SceneError if these files cannot be replaced. If a frame cannot be written completely, its files are removed.
 class VtkSeries {
 public:

@@ -43,8 +43,9 @@ struct RanksReport {
 };
 
 /// The ranks (MPI processes) that share the simulation of one run. Rank 0 builds the world, which is then divided among
-/// them. Rank 0 alone reports and writes files, for which it gathers the whole world. All ranks must call the functions
-/// that are marked as collective. In a run of one process no function communicates.
+/// them. Only rank 0 reports and writes files, for which it gathers the whole world.
+///
+/// Functions marked as collective must be called by all ranks. In a run of one process no function communicates.
 class RunRanks {
 public:
     /// Joins the other processes that mpirun or srun has started with this process, if there are any. Throws SceneError
@@ -60,8 +61,7 @@ public:
     /// and read the same files. `scene`: scene file. `assignments`: changes of the scene by --set.
     void compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments);
     /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if one of them has failed
-    /// before or has received a signal. The run must not start after a signal, because the signal may have interrupted
-    /// rank 0 in its search for a static equilibrium.
+    /// before or has received a signal: the signal may have interrupted rank 0 in its search for a static equilibrium.
     Json of_first(const Json& mine) const;
     /// Returns `asked` with two changes: the number of threads is that of the launcher if `asked` has none, and ranks
     /// other than 0 print no messages. Throws SceneError for outputs that several ranks cannot write.

@@ -27,10 +27,12 @@ struct PoolCalls {
     FunctionRef<void(int, int)> show;
 };
 
-/// Starts the jobs 0 to `count` - 1 in this order, at most `at_once` of them at the same time. After a first SIGINT or
-/// SIGTERM no more jobs start, and the running jobs get SIGTERM. A second signal kills the running jobs. If the calling
-/// process ends, for whatever reason, the system kills its jobs. No other thread may run during the call, because the
-/// jobs are started by fork(). Throws std::system_error if not even one process can be created.
+/// Starts the jobs 0 to `count` - 1 in this order, at most `at_once` of them at the same time. No other thread may run
+/// during the call, because the jobs are started by fork(). Throws std::system_error if not even one process can be
+/// created.
+/// - First SIGINT or SIGTERM: no more jobs start, and the running jobs get SIGTERM.
+/// - Second signal: kills the running jobs.
+/// - End of the calling process, for whatever reason: the system kills its jobs.
 PoolEnd run_in_processes(int count, int at_once, const PoolCalls& calls);
 
 }  // namespace skerry

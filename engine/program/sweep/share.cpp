@@ -70,9 +70,9 @@ Share array_share(const Variables& variables) {
 
 Share task_share(const Environment& environment) {
     const Variables variables(environment);
-    // The launcher of this process is the first one in this list whose variables are set. A launcher stands before
-    // those that may start it: a process that mpirun starts in a Slurm job has the variables of both, and its launcher
-    // is mpirun.
+    // Variables that launchers set for their processes. The first launcher whose variables are set is that of this
+    // process. The order matters: a process that mpirun starts in a Slurm job has the variables of both, and its
+    // launcher is mpirun.
     struct Launcher {
         const char *rank, *of;
     };

@@ -29,8 +29,8 @@ Share task_share(const Environment& environment);
 
 /// Returns the share of this process.
 /// - If `rank` and `of` are given, these define the share.
-/// - Otherwise the tasks of all jobs of a SLURM array are numbered one after the other:
-/// rank = (rank of the job) * (number of tasks of a job) + (rank from task_share()).
+/// - Otherwise the tasks of all jobs of a SLURM array are numbered one after the other: rank = (rank of the job) *
+///   (number of tasks of a job) + (rank from task_share()).
 ///
 /// Throws SceneError for values that are not numbers or are inconsistent.
 Share share_of(std::optional<int> rank, std::optional<int> of, const Environment& environment);

@@ -41,9 +41,9 @@ void require_a_readable_case(const SweepPlan& plan) {
         .refuse_inner(SceneError("no case gives a valid scene; the first error is in " + first));
 }
 
-/// Throws SceneError if an assignment of the sweep names a place that does not exist in the scene. In a list each case
-/// may set other places, so every case is tested. In all other sweeps all cases set the same places, so testing the
-/// first case is enough.
+/// Throws SceneError if an assignment of the sweep names a place that does not exist in the scene. In a list of cases,
+/// each case may set other places, so all cases are tested. In other sweeps all cases set the same places, so the first
+/// case is enough.
 void require_assignable(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;

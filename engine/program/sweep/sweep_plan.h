@@ -19,9 +19,11 @@ struct SweepPlan {
     CaseFile read(int index) const;
 };
 
-/// Reads the file of cases and the scene. Throws SceneError if the sweep sets a value at a place that does not exist in
-/// the scene, or if none of the first hundred cases gives a readable scene. If only some cases give unreadable scenes,
-/// these cases are refused when they run.
+/// Reads the file of cases and the scene. Throws SceneError if
+/// - the sweep sets a value at a place that does not exist in the scene,
+/// - none of the first hundred cases gives a readable scene.
+///
+/// If only some cases give unreadable scenes, these cases are refused when they run.
 SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace skerry

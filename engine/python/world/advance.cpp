@@ -58,9 +58,10 @@ private:
     World& world_;
 };
 
-/// Advances without the GIL. `check` is None or is called before each attempt at a step; the call of advance() ends if
-/// `check` returns False. `watch` is None or is called after each committed step. `take` is None or is called with the
-/// contact problem of each step whose number is a multiple of `every`.
+/// Advances without the GIL. The functions are optional (None):
+/// - `check` is called before each attempt at a step; the call of advance() ends if it returns False.
+/// - `watch` is called after each committed step.
+/// - `take` is called with the contact problem of each step whose number is a multiple of `every`.
 nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb::object& watch, const nb::object& take,
                  std::uint64_t every) {
     Use use(object);

@@ -234,9 +234,9 @@ nb::dict values_of(const DynamicsEstimate& estimate) {
 }
 
 nb::dict values_of(const StepReport& report) {
-    // Most members of a report usually have their default values. Copying the dictionary of a default report is
-    // therefore faster than making a new dictionary. The copied dictionary and its keys are never freed, because static
-    // objects are destroyed after the interpreter has ended.
+    // Result for a default report. Copying it is faster than making a new dictionary, because most members of a report
+    // usually have their default values. It is never freed: static objects are destroyed after the interpreter has
+    // ended.
     static const StepReport empty;
     static std::vector<PyObject*> names;  // key of each member, in the order of for_each_member
     static PyObject* const empty_values = [] {

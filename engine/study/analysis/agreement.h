@@ -8,9 +8,9 @@
 
 namespace skerry {
 
-/// Two runs agree on a column while their difference is at most this share of the column's scale (column_scales()). The
-/// share must exceed 1e-4: contacts between faces can suddenly increase a perturbation to 1e-4 of the scale, but do not
-/// let it grow further.
+/// Largest difference between two runs that agree on a column, as a share of the column's scale (column_scales()). It
+/// must exceed 1e-4: contacts between faces can suddenly increase a perturbation to 1e-4 of the scale, but do not let
+/// it grow further.
 inline constexpr Real agreement_share = 1e-3;
 
 /// An unperturbed run, and runs whose starts differ from its start by a perturbation. All have the same columns and
@@ -27,10 +27,12 @@ Real first_difference(const PerturbedRuns& runs, std::size_t column);
 /// Returns the time up to which all runs agree on a column [s]; infinity if they agree to the end.
 Real agree_until(const PerturbedRuns& runs, std::size_t column, Real scale);
 
-/// Returns the rate r at which the difference between perturbed and unperturbed runs grows, as exp(r t) [1/s]. The
-/// difference at the time t is the largest one of all columns with the unit m, each divided by the scale of its column.
-/// The rate is fitted to the rows from the first with a difference of at least 1e-14 up to the first with at least
-/// 0.01. Returns 0 if the difference grows less than a hundredfold.
+/// Returns the rate r at which the difference between perturbed and unperturbed runs grows, as exp(r t) [1/s]. Returns
+/// 0 if the difference grows less than a hundredfold.
+///
+/// The difference at the time t is the largest one of all columns with the unit m, each divided by the scale of its
+/// column. The rate is fitted to the rows from the first with a difference of at least 1e-14 up to the first with at
+/// least 0.01.
 Real growth_rate(const PerturbedRuns& runs, std::span<const Real> scales);
 
 }  // namespace skerry

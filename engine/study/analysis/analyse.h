@@ -8,8 +8,8 @@
 namespace skerry {
 
 /// Analyses the runs. The first must be the run of the unchanged scene, with the status `ok`. Runs with another status,
-/// other columns or another number of rows are not evaluated. The name of the scene, the assignments of the cheapest
-/// settings and `stopped` are left empty.
+/// other columns or another number of rows are not evaluated. In the result, the name of the scene, the assignments of
+/// the cheapest settings and `stopped` stay empty.
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings);
 
 /// Parts of the errors that further runs could reduce or determine more exactly.

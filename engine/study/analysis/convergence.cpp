@@ -42,9 +42,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     const auto be_coarse = [&] {
         shape_ = ConvergenceShape::coarse;
         used_order_ = 0;
-        // The error may be as large as the value itself. For a position it may be smaller, because a position can
-        // contain a large constant part without an error. The error is then at most `size`, the size of the position's
-        // change, plus the difference of the levels.
+        // The error may be as large as the value itself. A position can contain a large constant part without error, so
+        // its error is at most `size` (the size of its change) plus the difference of the levels.
         least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
     };
     const bool differs_much = std::abs(difference) > coarse_share * size;
@@ -70,8 +69,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         if (order_ > 0) remainder_ = std::min(remainder_, remainder(order_));
         if (order_ > 0 || !differs_much) return;
         // Meshes that lock (are far too stiff), such as a single layer of linear elements, change the value more from
-        // level to level until they are fine enough. The bound assumes that the difference grows once more, by at most
-        // the ratio of the last two differences, and falls with order `theory.least` after that.
+        // level to level until they are fine enough. The assumption is that the difference grows once more, by at most
+        // the ratio of the last two differences, and then falls with order `theory.least`.
         be_coarse();
         const Real growth = std::min(std::abs(difference / coarse_difference), std::pow(ratio, theory.most));
         remainder_ = std::max(remainder_, growth * (std::abs(difference) + remainder(theory.least)));

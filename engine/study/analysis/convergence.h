@@ -38,24 +38,21 @@ enum class ConvergenceShape { unmeasured, two_levels, coarse, regular, equal, sl
 class Convergence {
 public:
     Convergence() = default;
-    /// Levels with values that are not finite are omitted. Without a level with h = 1, or with only one level, the
-    /// error stays unmeasured. `noise`: size of differences without meaning, for example rounding errors. `size`:
-    /// typical size of the value. If two levels differ by more than 30 % of it, they are too coarse to estimate the
-    /// error from an order of convergence.
+    /// `noise`: size of differences without meaning, for example rounding errors. `size`: typical size of the value;
+    /// levels that differ by more than 30 % of it are too coarse for an order of convergence. Levels with values that
+    /// are not finite are omitted. Without a level with h = 1, or with only one level, the error stays unmeasured.
     Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise, Real size = infinity);
 
     ConvergenceShape shape() const { return shape_; }
     /// Observed order; NaN unless three levels with a constant ratio of h differ by more than the noise.
     Real order() const { return order_; }
-    /// Error bound of the value at `h`. For h below the finest level the bound is predicted with the order of
-    /// convergence; for the shapes coarse, slow and oscillating the bound of the finest level is returned. NaN if h
-    /// lies between or above the levels, or if the error is unmeasured.
+    /// True if the shape does not allow extrapolation: coarse, slow, fast or oscillating.
     bool irregular() const;
     /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
     Real error() const { return error_at(1); }
-    /// Error bound of the value at `h`. For h below the finest level the bound is predicted with the order of
-    /// convergence; for the shapes coarse, slow and oscillating the bound of the finest level is returned. NaN if h
-    /// lies between the levels, above them, or if the error is unmeasured.
+    /// Error bound of the value at `h`. NaN if the error is unmeasured, or if h is not a level and not below the finest
+    /// one. For h below the finest level, the bound of that level is reduced by the order of convergence; for the
+    /// shapes coarse, slow and oscillating it is not reduced.
     Real error_at(Real h) const;
     /// Error bound of any other approximation of the same limit; NaN if unmeasured.
     Real error_of(Real value) const;

@@ -106,9 +106,9 @@ struct StressGrowth {
                std::all_of(rates.end() - static_cast<std::ptrdiff_t>(levels), rates.end(),
                            [](Real rate) { return rate > least_rate; });
     }
-    /// True for a singular stress, which has no limit for finer meshes. Each level halves the edge length h, and
-    /// `rates` has the exponents a with which the stress grows, as h^-a, from level to level. For a singular stress
-    /// they stay equal. For a converging stress each is 0.5 (order 1) to 0.7 (order 1/2) times the previous one.
+    /// True for a singular stress, which has no limit for finer meshes. Its growth rates, see `rates`, stay equal when
+    /// each level halves the edge length. For a converging stress each rate is 0.5 (order 1) to 0.7 (order 1/2) times
+    /// the previous one.
     bool is_singular() const {
         constexpr Real least_steadiness = 0.75;
         return grows(2) && rates.back() > least_steadiness * rates[rates.size() - 2];
@@ -289,9 +289,8 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
-    // Flat faces cause an error of the change of a length since the start, but not of the constant part of the length.
-    // The error is therefore a share of the size of the column (the largest change since the start), or of the value if
-    // it is smaller.
+    // Flat faces change a displacement, but not the constant part of a length. The error is therefore a share of the
+    // size of the column (the largest change since the start), or of the value if it is smaller.
     quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
     r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);
@@ -316,9 +315,9 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
 }
 
 void StudyFamily::find_zeros() {
-    // If a shorter step or a smaller tolerance reduces the size of a column below this share of its size in the first
-    // run, its values are only errors of the steps or of the solver. A quarter of the step, for example, reduces an
-    // error of order 1 to a quarter.
+    // A column counts as zero if a shorter step or a smaller tolerance reduces its size below this share of its size in
+    // the first run: its values are only errors of the steps or of the solver. For comparison, a quarter of the step
+    // reduces an error of order 1 to a quarter.
     constexpr Real vanishing = 1.0 / 3;
     std::vector<Real> largest = sizes, least = sizes;
     for (const StudyRun* run : comparable) {

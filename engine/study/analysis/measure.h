@@ -25,9 +25,9 @@ struct StudyFamily {
     // Runs that ended well and have the columns and the number of rows of `scene`; includes `scene`.
     std::vector<const StudyRun*> comparable{};
     std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
-    // For each column whose values are only errors of the contact solver or of the steps: largest size of the column in
-    // all runs; 0 for all other columns. The values count as such errors if a lower tolerance or shorter steps reduce
-    // the size of the column to less than a third.
+    // Largest size of each column in all runs, if its values are only errors of the contact solver or of the steps; 0
+    // for all other columns. The values are such errors if a lower tolerance or shorter steps reduce the size to less
+    // than a third.
     std::vector<Real> zero_within{};
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
@@ -48,8 +48,8 @@ struct MeasuredQuantity {
 };
 
 /// Returns the size of each column: its largest absolute value in the run, or for lengths and energies the largest
-/// change since the start. Some columns share one size, the largest of theirs: the components of a vector, all energies
-/// of a probe, and all forces of a probe.
+/// change since the start. The largest size of a group of columns is the size of all of them; groups are the components
+/// of a vector, all energies of a probe, and all forces of a probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative. The scale is the size of the column (see

@@ -63,9 +63,9 @@ CableState cable_state(const WorldState& state, CableHandle cable);
 // control_cavities.cpp
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity);
-/// Stores the present face positions of a body's open cavities with a gas or a liquid. Steps change the volume of such
-/// a cavity by the volume that its faces sweep from the stored positions. Must be called after nodes were placed
-/// between steps, so that the placement does not change the volume.
+/// Stores the present face positions of a body's open cavities with a gas or a liquid. The volume of such a cavity
+/// changes by the volume that its faces sweep from the stored positions. Must be called after nodes were placed between
+/// steps, so that the placement does not change the volume.
 void renew_corners(Model& model, std::size_t body);
 
 // control_dynamics.cpp

@@ -19,9 +19,9 @@ namespace {
 // parallel if the cosine is at least 1 minus this number.
 constexpr Real perpendicular_tolerance = 1e-9;
 
-/// Returns the matrix for AttachmentTable::held. Its columns are the unit vectors of the directions. No directions, or
-/// three, mean that nodes are held completely; the result is then the identity. Throws SceneError unless there are at
-/// most three nonzero directions, perpendicular to each other.
+/// Returns the matrix for AttachmentTable::held, whose columns are the unit vectors of the directions. It is the
+/// identity for no directions, or three: nodes are then held completely. Throws SceneError unless there are at most
+/// three nonzero directions, perpendicular to each other.
 Mat3 held_directions(const std::vector<Vec3>& directions) {
     if (directions.empty()) return Mat3::Identity();
     if (directions.size() > 3)

@@ -49,9 +49,9 @@ Vec3 rest_area(const Model& model, std::size_t body, const Face& face, Vec3& cor
     return area_of(x);
 }
 
-/// Faces around all hollows inside a body, or all faces of its surface if there is no hollow. A connected part of the
-/// surface bounds a hollow if its signed volume is negative. Its normals, which point out of the body, then point into
-/// the enclosed space.
+/// Faces around all hollows inside a body, or all faces of its surface if there is no hollow. The boundary of a hollow
+/// is a connected part of the surface with a negative signed volume, because its normals point out of the body, which
+/// is into the enclosed space.
 std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
     const std::vector<Face>& surface = model.body_records[body].surface;
     std::vector<std::size_t> parent(static_cast<std::size_t>(model.bodies.nodes[body].size()));

@@ -141,9 +141,9 @@ void require_upright_shape(const Model& model, std::size_t body, std::span<const
                       "advance until the body has recovered, or call reset() first");
 }
 
-/// Appends another row for a body, with the dynamics `next` and without velocity. If `next` is rigid, the row gets the
-/// present shape of the body, otherwise the shape of its mesh. If the new row has no valid stable step, removes this
-/// row again and throws SceneError.
+/// Appends another row for a body, with the dynamics `next` and without velocity. A rigid row gets the present shape of
+/// the body, other rows the shape of its mesh. If the new row has no valid stable step, it is removed again, and
+/// SceneError is thrown.
 std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     Model& model = world.model;
     const BodyTable& bodies = model.bodies;

@@ -179,9 +179,8 @@ bool collisions_off_by_another(const JointTable& table, std::size_t joint) {
     return false;
 }
 
-/// A joint that mimics another joint, its leader, has the coordinate ratio * (coordinate of the leader) + offset. The
-/// leader can mimic a further joint; the last joint of this chain is the head. MimicRelation gives the coordinate of a
-/// joint by that of its head: ratio * (coordinate of the head) + offset.
+/// Coordinate of a joint that mimics another one (its leader), as `ratio` * (coordinate of the head) + `offset`. The
+/// head is the last joint of the chain of leaders, since a leader can mimic a further joint.
 struct MimicRelation {
     Index head;
     Real ratio = 1, offset = 0;

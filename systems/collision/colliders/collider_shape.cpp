@@ -35,13 +35,14 @@ Vec3 rim_direction(Index point, const Vec3& normal) {
     return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
 }
 
-/// Distance that a point can move without leaving the flat region (flat_region) at one side of the shape [m]; negative
-/// outside of the region. `above`: height of the point above the side. `beside`: distance, parallel to the side, of the
-/// point from the border of the side. `thickness`: distance between the side and the opposite side.
+/// Distance that a point can move without leaving the flat region (flat_region) at one side of the shape; negative
+/// outside of the region [m]. `above`: height of the point above the side. `beside`: distance, parallel to the side, of
+/// the point from the border of the side. `thickness`: distance between the side and the opposite side.
 ///
-/// Three kinds of planes bound the region, and the least distance from them is returned: planes through the border,
-/// perpendicular to the side (distance `beside`); planes through the border at 45 degrees, below which another side is
-/// nearer ((beside + above) / sqrt(2)); the plane halfway to the opposite side (above + thickness / 2).
+/// Three kinds of planes bound the region; the least distance from them is returned:
+/// - planes through the border, perpendicular to the side: distance `beside`
+/// - planes through the border at 45 degrees, below which another side is nearer: (beside + above) / sqrt(2)
+/// - the plane halfway to the opposite side: above + thickness / 2
 Real within_side(Real beside, Real above, Real thickness) {
     return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
 }

@@ -21,21 +21,21 @@ struct ColliderPoint {
 /// mesh has none, because the nodes of the mesh are tested.
 Index collider_point_count(ColliderShape shape);
 
-/// Point k of a collider for a test against a face. `normal`: outward unit normal of the face in the frame of the
-/// collider. A rim has five points: the first is the rim point furthest behind the plane of the face, and so depends on
-/// `normal`; the other four are fixed. The points of all other shapes are fixed.
+/// Point k of a collider for a test against a face with the outward unit normal `normal`, both in the frame of the
+/// collider. Only the first of the five points of a rim depends on `normal`: it is the rim point furthest behind the
+/// plane of the face.
 ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal);
 
 /// True if point k is the first point of a rim: its position depends on the normal of the face (collider_point).
 bool is_moving_rim_point(ColliderShape shape, Index k);
 
-/// A flat region of a shape is a volume at a flat or hollow side of the shape, in which the signed distance is a linear
-/// or concave function. On a segment or triangle in this volume, the distance is therefore least at an end or corner,
-/// so only nodes can touch. A plane has one region, a box one at each of its six faces, a cylinder one at each end, and
-/// a bucket one inside and one below.
+/// Index of the flat region in which `point` can move furthest before it leaves the region (flat_reach); no_index if
+/// the shape has no flat region.
 ///
-/// Returns the index of the flat region in which `point` can move furthest before it leaves the region (flat_reach), or
-/// no_index if the shape has no flat region.
+/// A flat region is a volume at a flat or hollow side of a shape, in which the signed distance is a linear or concave
+/// function. On a segment or triangle in it, the distance is therefore least at an end or corner, so only nodes can
+/// touch. A plane has one region, a box six (one at each face), a cylinder two (at its ends), a bucket two (inside and
+/// below).
 Index flat_region(const ColliderGeometry& geometry, const Vec3& point);
 
 /// Distance that a point can move in the frame of the collider while it stays in the flat region `region` [m]. The
@@ -69,9 +69,8 @@ using LocalFace = std::array<Vec3, 3>;
 
 struct FaceContact {
     // Lower bound of the distance between the face and the ball of radius point.radius around the collider point [m].
-    // Exception: the first point of a rim moves along the rim if the face rotates, so a bound for its present position
-    // would soon be wrong. For this point, `nearest` is a lower bound of the distance between the face and the complete
-    // collider.
+    // The first point of a rim moves along the rim if the face rotates; for this point, `nearest` bounds the distance
+    // between the face and the complete collider.
     Real nearest;
     bool above;  // true: the projection of the collider point on the plane of the face is inside the face
     // Signed distance of the ball around the collider point from the plane of the face; negative behind the plane [m].

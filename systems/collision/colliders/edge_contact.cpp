@@ -26,8 +26,7 @@ constexpr Real place_tolerance = 1e-10;
 constexpr Real shortest_stretch = 0.1;
 
 // Number of intervals in which an edge near the wall of a bucket is searched. The wall is not convex, so the distance
-// along an edge may have several minima, for example two if the edge lies across the rim. Each minimum must be in an
-// interval of its own.
+// may have several minima, for example two along an edge across the rim. Each must be in an interval of its own.
 constexpr int wall_intervals = 16;
 
 /// An interval of the parameter along the edge. The interval contains the parameter to be found.
@@ -71,13 +70,13 @@ public:
     }
 
     /// Parameter s at which the derivative of the distance with respect to the arc length has the value `slope`, in
-    /// closed form. For a box, the formula is valid as long as the nearest corner, edge or side of the box is the same
-    /// as at s = `near`. The result is NaN if there is no solution, or for other shapes than sphere and box.
+    /// closed form for a sphere or box; NaN if there is no solution, or for other shapes. For a box, the formula holds
+    /// while its nearest corner, edge or side is the same as at s = `near`.
     ///
-    /// Derivation: outside of the shape, the distance from the centre of the sphere, or from the nearest corner, edge
-    /// or side of the box, is f(s) = sqrt(q^2 (s - s0)^2 + f0^2). Here q = |along|, and f0 is the least value of f, at
-    /// the parameter s0. The derivative of f with respect to the arc length is q^2 (s - s0) / (length f). With r =
-    /// slope length, it equals `slope` at s = s0 + r f0 / (q sqrt(q^2 - r^2)).
+    /// Derivation: let f(s) be the distance from the centre of the sphere, or from the nearest corner, edge or side of
+    /// the box, f0 its least value, at s0, and q = |along|. Then f^2 = q^2 (s - s0)^2 + f0^2, and the derivative by arc
+    /// length is
+    /// q^2 (s - s0) / (length f). With r = slope length, it equals `slope` at s = s0 + r f0 / (q sqrt(q^2 - r^2)).
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
@@ -102,9 +101,9 @@ private:
 };
 
 /// Finds the parameter s along an edge at which the derivative of the distance passes the value `slope`. The search
-/// first tests the kinks and the parameter predicted by DistanceAlongEdge::place_of. Then it narrows the interval by
-/// regula falsi (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and
-/// where the derivative is constant.
+/// first tests the kinks and the prediction of DistanceAlongEdge::place_of, then narrows the interval by regula falsi
+/// (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and where the
+/// derivative is constant.
 class SlopeRoot {
 public:
     /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a
@@ -160,9 +159,9 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the contact points in an interval in which the derivative of the distance increases (edge_contact.h). Contact
-/// points are the minimum, or both ends of a flat stretch, where the distance is nearly constant. The points beyond
-/// which the distance rises steeply are contact points, too.
+/// Finds the contact points in an interval in which the derivative of the distance increases (edge_contact.h):
+/// - the minimum, or both ends of a flat stretch, where the distance is nearly constant;
+/// - the points beyond which the distance rises steeply.
 class Stretch {
 public:
     Stretch(const DistanceAlongEdge& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -216,9 +215,10 @@ private:
             add(1, last);
         }
     }
-    /// add_before and add_behind add one more contact point, at least shortest_stretch before or behind the contact
-    /// point at `other`. They add none if the distance already is steeper than steep_slope at this least separation:
-    /// the derivative increases along the edge, so the distance is even steeper further away.
+    /// add_before and add_behind add the point beyond which the distance rises steeply, if it is more than
+    /// shortest_stretch before or behind the contact point at `other`. The first line tests this cheaply: the
+    /// derivative increases along the edge, so a distance that is too steep at this separation is even steeper further
+    /// away.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
@@ -255,8 +255,8 @@ Real scan(const DistanceAlongEdge& along, bool convex, auto&& visit) {
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
         // Lower bound of the distance in the interval. For a convex part it follows from the tangents at both ends. For
-        // other parts it is (d0 + d1 - length) / 2 with the distances d0 and d1 at the ends, because over a length l of
-        // the edge, the distance changes by at most l.
+        // other parts, with the distances d0 and d1 at the ends, it is (d0 + d1 - length) / 2, because the distance
+        // changes by at most the length along the edge.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

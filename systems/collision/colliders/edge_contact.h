@@ -30,13 +30,12 @@ struct EdgeContact {
 };
 
 /// Finds the points between the ends of an edge at which the distance between the edge and a part of a collider has a
-/// minimum. `a`, `b`: ends of the edge in the frame of the collider.
-///
-/// If the distance is nearly constant on a stretch of the edge, for example along a side of a box, both ends of this
-/// stretch are found instead of the minimum. The points beyond which the distance rises steeply (steep_slope) are
-/// found, too. Example: an edge lies on a side of a box and extends beyond the border of the side. If the edge is
-/// slightly tilted, the minimum is not at the border. A contact at the border supports the edge before it rotates about
-/// the border.
+/// minimum. `a`, `b`: ends of the edge in the frame of the collider. Other points are found, too:
+/// - If the distance is nearly constant on a stretch of the edge, for example along a side of a box, both ends of this
+///   stretch are found instead of the minimum.
+/// - Points beyond which the distance rises steeply (steep_slope). Example: an edge lies, slightly tilted, on a side of
+///   a box and extends beyond its border. The minimum is not at the border, but a contact there supports the edge
+///   before it rotates about the border.
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
 }  // namespace skerry

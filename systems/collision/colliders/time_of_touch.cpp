@@ -23,9 +23,9 @@ Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3
     return {distance, weight, on.point, on.normal};
 }
 
-/// Nearest points of an edge and a convex collider part. The distance along the edge is a convex function, so it is
-/// least where its derivative changes sign; bisection finds this point. The normal at the found point is accurate if
-/// the point is outside of the part, because the gradient of the distance is continuous there.
+/// Nearest points of an edge and a convex collider part, found by bisection: the distance along the edge is convex, so
+/// it is least where its derivative changes sign. Outside of the part the gradient of the distance is continuous, so
+/// the normal at the found point is accurate.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -63,8 +63,8 @@ public:
     }
 
     /// Lower bound of the distance between the wall and the stretch of the edge between the parameters `low` and `high`
-    /// [m]. It combines the gap in the radial direction with the gap in the axial direction. The first follows from the
-    /// least and greatest distance of the stretch from the axis, the second from its least and greatest height.
+    /// [m]. It combines the radial gap, from the least and greatest distance of the stretch from the axis, with the
+    /// axial gap, from its least and greatest height.
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_max = std::max(r_low, r_high),
                    r_min = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -84,10 +84,11 @@ private:
 };
 
 /// Nearest points of an edge and the wall of a bucket. The distance may have several minima along the edge, so they are
-/// found by branch and bound. All distances are reduced by `threshold` [m]. The returned distance is a lower bound of
-/// the least distance. It is at least half of the distance at the returned point. Exception: if the search reaches its
-/// limit of samples, the returned distance is at least a quarter of the distance at the returned point, but not always
-/// a lower bound.
+/// found by branch and bound. All distances are reduced by `threshold` [m].
+///
+/// The returned distance is a lower bound of the least distance, and at least half of the distance at the returned
+/// point. If the search reaches its limit of samples, it is at least a quarter of that distance, but not always a lower
+/// bound.
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real threshold) {
     constexpr int max_samples = 1024;
     const Wall wall(geometry, end);
@@ -133,10 +134,10 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
     return nearest;
 }
 
-/// Nearest points of a face and the disc inside a rim. The rim point that reaches furthest towards the face is the
-/// first to touch the interior of the face. It is sought for both sides of the face, because the rim may be on either
-/// side. If it is in front of this side and its projection lies inside the face, it is the nearest point. Otherwise an
-/// edge of the face is nearest; then `in_face` is false and the returned distance is only a lower bound.
+/// Nearest points of a face and the disc inside a rim. The rim point that reaches furthest towards the face is sought
+/// for both sides of the face. If it is in front of this side and its projection lies inside the face, it is the
+/// nearest point. Otherwise an edge of the face is nearest: `in_face` is false, and the returned distance is only a
+/// lower bound.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
@@ -185,10 +186,10 @@ public:
     }
 
     /// Upper bound of the speeds of all nodes of the feature relative to the collider during the whole step [m per
-    /// step]. A node has the velocity drift - turn x arm. drift: displacement of the node relative to the collider.
-    /// turn: rotation vector of the collider. arm: vector from the collider's origin to the node. The bound is the
-    /// speed at the start of the step plus |turn| |drift|. This product bounds the growth of the speed, because the arm
-    /// changes by at most |drift| during the step.
+    /// step]. It is the speed at the start plus |turn| |drift| (docs/methods/collision.md 7.5).
+    ///
+    /// drift: displacement of the node relative to the collider; turn: rotation vector of the collider. A node has the
+    /// velocity drift - turn x arm, and the arm from the collider's origin to the node changes by at most |drift|.
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)
@@ -196,9 +197,9 @@ public:
         return greatest;
     }
 
-    /// Duration after `time` in which no node can pass the tangent plane at the nearest point of the collider, as a
-    /// fraction of the step. During the duration d, a node approaches the plane by at most d v + d^2 a / 2 <= d (v + a
-    /// (1 - time) / 2), where v is its speed towards the plane at `time`, and a bounds its acceleration.
+    /// Duration d after `time` in which no node can pass the tangent plane at the nearest point of the collider, as a
+    /// fraction of the step. With the speed v of a node towards the plane at `time`, and an upper bound a of its
+    /// acceleration, the node approaches by at most d v + d^2 a / 2 <= d (v + a (1 - time) / 2).
     Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinity;
@@ -235,8 +236,9 @@ private:
 
 /// True if the tangent plane at the nearest point of the collider separates the feature from the tested part of the
 /// collider (for a face: from the tested collider point and its ball). The feature then cannot touch before one of its
-/// nodes passes this plane. False for the wall of a bucket, which is not convex, and for a face if one of its edges is
-/// nearest, because Touch then has no normal.
+/// nodes passes this plane. False in two cases:
+/// - the wall of a bucket, which is not convex;
+/// - a face with one of its edges nearest, because Touch then has no normal.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
     return geometry.shape != ColliderShape::bucket || feature.part_or_point == 0;

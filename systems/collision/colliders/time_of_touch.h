@@ -40,31 +40,31 @@ struct Touch {
     bool within = false;  // true: the collider touches the face from inside the body; set by first_touch only
 };
 
-/// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider. If
-/// a face is tested against the first point of a rim (collider_point), all points of the rim are considered. If no
-/// point of the rim faces the interior of the face, for example because the rim has already passed through the face,
-/// the result is a lower bound of the distance of the rim from the edges of the face. Distances of nodes and edges are
-/// signed and reduced by `threshold.distance`. The distance from a face is positive on both of its sides.
+/// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider.
+/// - Distances of nodes and edges are signed and reduced by `threshold.distance`.
+/// - The distance from a face is positive on both of its sides.
+/// - If a face is tested against the first point of a rim (collider_point), all points of the rim are considered. If
+///   none faces the interior of the face, for example because the rim has already passed through it, the result is a
+///   lower bound of the distance of the rim from the edges of the face.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
-/// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, and the feature
-/// is not the core of a round body. No feature can move around a plane, so a feature that has crossed the plane is
-/// behind it at the end. For a core the end of the step does not suffice, because the distance of the core from the
-/// plane must not fall below the radius at any time of the step.
+/// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, around which no
+/// feature can move, and the feature is not the core of a round body. For a core they do not suffice: its distance from
+/// the plane must not fall below the radius at any time of the step.
 bool end_position_suffices(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
 /// Upper bound of the decrease in distance between the collider and any point of the feature, while both move for h
 /// seconds [m].
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature);
 
-/// Finds the first time in the step at which a feature and a collider are nearly in contact, and returns their nearest
-/// points at this time; no value if they do not meet. The method is conservative advancement, similar to
-/// time_of_contact. `time_of_touch`: receives the time as a fraction of the step, but is left unchanged if
-/// end_position_suffices is true; may be null.
+/// Finds the first time in the step at which a feature and a collider are nearly in contact, by conservative
+/// advancement similar to time_of_contact, and returns their nearest points at this time. No value is returned if they
+/// do not meet, if they touch or overlap at the start of the step, or if an edge of a face touches first, because edges
+/// are features of their own.
 ///
-/// If end_position_suffices is true, only the end of the step is tested, and the nearest points are returned if the
-/// feature is behind the plane then. No value is returned for a feature that touches or overlaps the collider at the
-/// start of the step, or for a face whose edges touch first, because edges are tested as separate features.
+/// `time_of_touch`: receives the time as a fraction of the step; may be null. If end_position_suffices is true, it is
+/// left unchanged: only the end of the step is tested, and the nearest points are returned if the feature is behind the
+/// plane.
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
                                  const TouchingFeature& feature, Real* time_of_touch = nullptr);
 

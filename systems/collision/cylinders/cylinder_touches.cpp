@@ -15,9 +15,9 @@ namespace skerry {
 
 namespace {
 
-// If the angle between an end of the cylinder and a flat side of another shape is below this value [rad], eight points
-// fixed to the cylinder support the end (RimPoints). The direction of such a small tilt is only noise; points that
-// depend on it would jump along the rim while the cylinder stands at rest.
+// Angle between an end of the cylinder and a flat side of another shape below which eight points fixed to the cylinder
+// support the end (RimPoints) [rad]. The direction of such a small tilt is only noise: points that depend on it would
+// jump along the rim of a cylinder at rest.
 constexpr Real standing_tilt = 1e-4;
 // If the sine of the angle between an end of the cylinder and a flat side of another shape exceeds this limit, only one
 // point of the rim of this end can touch the side.
@@ -25,9 +25,9 @@ constexpr Real lying_sine = 0.5;
 // Angle by which a contact normal at an edge or rim may be outside of the range between the normals of the two adjacent
 // sides [rad]. Capsules have an equal tolerance (axis_tilt in point_triangle_contact.cpp).
 constexpr Real rim_angle = 0.03;
-// Tolerance of nearest_region(), which classifies the gradient of the distance from the cylinder. If the component
-// perpendicular to the axis is at most this value, the nearest part is an end; if the component along the axis is at
-// most this value, it is the curved side.
+// Tolerance of nearest_region(), which classifies the gradient of the distance from the cylinder. The nearest part is
+// - an end, if the component perpendicular to the axis is at most this value;
+// - the curved side, if the component along the axis is at most this value.
 constexpr Real gradient_rounding = 1e-9;
 // Tolerance at the border of a flat side, as a fraction of the size of the side. Points that rounding errors put beside
 // a side thus count as above the side.
@@ -39,9 +39,9 @@ constexpr int samples_around = 16;
 // Accuracy of the angle of a contact point on a rim, and distance below which two minima count as one [rad].
 constexpr Real turn_tolerance = 1e-12, same_angle = 1e-6;
 
-// Numbers of the contact points on a shape: numbers_per_rim numbers for each rim, numbers_per_side numbers for each
-// flat side. Points on the rims of the cylinder come first, from 0. The other constants are the first numbers of points
-// on rims of the other shape, on its flat sides, at its corners, on its edges, and between curved sides.
+// Numbers of the contact points on a shape: numbers_per_rim for each rim, numbers_per_side for each flat side. Points
+// on the rims of the cylinder come first, from 0. The other constants are the first numbers on the rims, flat sides,
+// corners and edges of the other shape, and between curved sides.
 constexpr Index numbers_per_rim = 8, first_on_other_rims = 16, first_on_sides = 40, numbers_per_side = 16,
                 first_at_corners = 136, first_on_edges = 144, first_between_round_sides = 240;
 
@@ -249,9 +249,9 @@ private:
             });
     }
 
-    /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. A side that is a
-    /// disc may lie below only a part of the rim. So for a disc, those points of the nearer rim are added, too, at
-    /// which the projection of this rim on the plane of the side crosses the outer border of the disc.
+    /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. If the side is a
+    /// disc, it may lie below only a part of the rim. The points of the nearer rim whose projections on the plane of
+    /// the side lie on the border of the disc are then added, too.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = pose_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -354,9 +354,9 @@ private:
             }
     }
 
-    /// Adds the contact point between the curved side of the cylinder and a curved side of the other shape, if the
-    /// nearest points of the two axes lie between the ends of the axes. `radius`: radius of the other curved side.
-    /// `low`, `high`: z coordinates of the ends of the other axis. For parallel axes, the rims make the contacts.
+    /// Adds the contact point between the curved sides of the cylinder and the other shape, if the nearest points of
+    /// their axes lie between the ends of the axes. For parallel axes, the rims make the contacts. `radius`: radius of
+    /// the other curved side [m]. `low`, `high`: z coordinates of the ends of the other axis [m].
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =

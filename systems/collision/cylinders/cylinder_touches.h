@@ -39,16 +39,15 @@ private:
 };
 
 /// Points on the rims of a cylinder that can touch a flat side of another shape. `normal`: outward unit normal of the
-/// side in the frame of the cylinder.
+/// side in the frame of the cylinder. The points of each rim depend on the tilt of the ends against the side:
+/// - above 30 degrees: the point nearest to the side
+/// - up to 30 degrees: this point, and those at 90, 180 and 270 degrees from it
+/// - up to 1e-4 rad: the nearest point, and eight points at fixed angles
 ///
-/// The list contains, for each of the two rims, the point that is nearest to the side. If the ends are tilted against
-/// the side by at most 30 degrees, it also contains the points of each rim at 90, 180 and 270 degrees from the nearest
-/// one. If the tilt is at most 1e-4 rad, it contains eight points of each rim at fixed angles instead of these three.
-///
-/// Reason for the right angles: a contact assumes that its point moves on a straight path within a step. Suppose that a
-/// tilted cylinder rotates about its axis by less than a radian. On the straight paths, none of the four points comes
-/// nearer to the side than the point nearest to the side was at the start. Points at other angles, for example 45
-/// degrees, could come nearer on such a path, and would cause false contacts.
+/// Reason for the right angles: a contact assumes that its point moves on a straight path in a step. If a tilted
+/// cylinder rotates about its axis by less than a radian, no straight path from these four points comes nearer to the
+/// side than the nearest point was at the start. Paths from other angles, for example 45 degrees, could, and would
+/// cause false contacts.
 struct RimPoints {
     static constexpr Index max_per_rim = 9;
     struct Point {

@@ -33,9 +33,9 @@ inline bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, 
 /// The cylinder at the start of the step, with the velocities that it has at this time.
 RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
 
-/// The cylinder at the start of the step, with the constant velocities that move it to its position at the end of the
-/// step. The angular velocity belongs to the smallest rotation that turns the axis to its final direction. The rotation
-/// about the axis is left out, because it does not change the surface.
+/// The cylinder at the start of the step, with the constant velocities that move it to its position at the end. The
+/// angular velocity belongs to the smallest rotation that turns the axis to its final direction, because rotation about
+/// the axis does not change the surface.
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
 
 }  // namespace skerry

@@ -22,9 +22,9 @@ struct PairOwners {
     std::span<const std::int32_t> body_owner{};  // by row of BodyTable: owner; empty: this rank has all pairs
     std::int32_t rank = 0;                       // number of this rank
 
-    /// True if a pair of two bodies that can move belongs to the rank of the second body. The rank of the body with the
-    /// higher slot gets the pair if the sum of the slots is odd, else the rank of the other body. The owner is thus
-    /// independent of the order of the bodies, and each of two ranks gets about half of the pairs between their bodies.
+    /// True if a pair of two bodies that can move belongs to the rank of the second body. The pair belongs to the rank
+    /// of the body with the higher slot if the sum of the slots is odd, else to that of the other body. So the order of
+    /// the bodies has no effect, and each of two ranks gets about half of their common pairs.
     static constexpr bool belongs_to_second(std::uint32_t first_slot, std::uint32_t second_slot) {
         return (first_slot + second_slot) % 2 == (first_slot < second_slot);
     }

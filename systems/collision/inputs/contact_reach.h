@@ -1,34 +1,31 @@
-// Bounds on travel that decide how long the lists of the collision stages are valid. The lists are Verlet lists, but
-// they expire after a certain travel instead of a certain time. The bounds use these quantities of a pair:
+// Bounds on travel that decide how long the lists of the collision stages are valid (docs/methods/collision.md 2). The
+// lists are Verlet lists, but they expire after a certain travel instead of a certain time. Travel is a counter that
+// bounds how far the nodes of a body move in its frame (BodyTable). The bounds use these quantities of a pair:
 //
 //   D(t)      distance at time t between two features of the pair, or between its bodies
-//   g(t)      gap of a candidate, which is D(t) minus the contact distance
-//   T(t)      travel of the pair. For two bodies it is the sum of the travels of both bodies in their frames (see
-//             BodyTable) and of the path of one frame relative to the other. For a body and a collider it is the sum of
-//             the travel of the body, the path of the body's frame and the travel of the collider.
+//   g(t)      gap of a candidate: D(t) minus the contact distance
+//   T(t)      travel of the pair: the bound PairTable::travel on the relative motion of its partners
 //   d0        sum of BodyTable::displacement of both partners at time 0, when D(0) was measured; 0 for a collider
-//   T0        T0 = T(0) - 2 d0 (pair_travel_base), so T - T0 is the travel since time 0 plus 2 d0. Reason for 2 d0:
-//             the travel of a body sums the changes of its displacement d, the greatest distance of a node from its
-//             origin. A node can move by 2 d to the opposite side of its origin while d, and so the travel, does not
-//             change.
-//   F         front, F = T(t) plus an upper bound of the decrease of D in this step (PairTable::travel_bound)
-//   zone, m   zone: distance below which features are tested in each step (PairScale); m: margin of a list
+//   T0        T(0) - 2 d0 (pair_travel_base). Reason for 2 d0: a node can move by 2 d, to the opposite side of its
+//             origin, while the displacement d of its body, and so the travel, does not change.
+//   F         front: T(t) plus an upper bound of the decrease of D in this step (PairTable::travel_bound)
+//   zone      distance below which features are tested in each step (PairScale)
+//   m         margin of a list
 //
 // 1. Motion:      D(t) >= D(0) - (T(t) - T0). Common motion of both partners does not count (measure_displacement.h).
 // 2. Contact:     a candidate becomes a contact of this step only if g <= reach(h, relative speed of the candidate).
 // 3. Front:       T(t) + reach <= F for every candidate, because no candidate is faster than its pair.
 // 4. Asleep:      F < T0 + g(0) implies g(t) > reach, by 1 and 3. So a candidate sleeps (needs no test) until F reaches
 //                 asleep_until = T0 + g(0).
-// 5. List:        suppose that all features with D(0) < zone + m are listed. Then F < T0 + m implies that no other
-//                 features have D(t) < zone or become a contact. So the list is valid until F reaches
-//                 valid_until = T0 + m.
-// 6. Broad phase: suppose that all pairs of bodies a, b are listed whose boxes overlap at time 0 when they are grown by
-//                 margins m_a and m_b and by the contact distances. The list is complete while the front of every
-//                 single body b satisfies F_b < T_b(0) - 2 d_b(0) + m_b = body_valid_until. The travel T_b of the body
-//                 and d_b are defined like T and d0; T_b includes the path of the body's frame.
+// 5. List:        if all features with D(0) < zone + m are listed, the list is valid until F reaches
+//                 valid_until = T0 + m: until then, no other features have D(t) < zone or become a contact.
+// 6. Broad phase: suppose that all pairs of bodies are listed whose boxes overlap at time 0, when each is grown by the
+//                 margin m_b of its body b and by the contact distance. The list is complete while the front F_b of
+//                 every body b is below body_valid_until = T_b(0) - 2 d_b(0) + m_b. d_b is the displacement of the
+//                 body, and T_b its travel plus the path of its frame.
 //
-// F includes the step that begins, so that the lists need no further margin for this step. Rounding errors of the
-// travels, which are sums, need no margin either: the constant part of reach is larger by many orders of magnitude.
+// F includes the step that begins, so the lists need no further margin for this step. Nor do they need one for rounding
+// errors of the travels, which are sums: the constant part of reach is larger by many orders of magnitude.
 #pragma once
 
 #include <algorithm>
@@ -39,9 +36,9 @@
 
 namespace skerry {
 
-// Safety factor on speeds, because forces can increase the speeds during the step. If the increase exceeds the factor,
-// the contact is found one step later, when the distance may already be below the contact distance. Motions that would
-// make surfaces cross are detected by find_crossings.
+// Safety factor on speeds, because forces can increase the speeds during the step. If they increase by more, the
+// contact is found one step later, perhaps below the contact distance; find_crossings prevents that surfaces cross
+// meanwhile.
 inline constexpr Real speed_safety = 2.0;
 
 // Features are not tested for a crossing in the step if the upper bound of their approach is at most this fraction of
@@ -52,9 +49,8 @@ inline constexpr Real slow_fraction = 0.5;
 // other. The contacts of a resting pile therefore persist while the pile vibrates.
 inline constexpr Real touching_fraction = 0.1;
 
-/// Largest gap that can close within a step of length h [m]. The term 2 gravity h bounds the change of the relative
-/// speed, because gravity can change the speed of each partner by gravity h. T is Real, or a vector type for several
-/// relative speeds at once.
+/// Largest gap that can close within a step of length h [m]. Gravity can change the speed of each partner by gravity h,
+/// and thus the relative speed by 2 gravity h. T is Real, or a vector type for several relative speeds at once.
 template <class T>
 T reach(Real h, const T& relative_speed, Real gravity, Real contact_distance) {
     return speed_safety * h * (relative_speed + 2 * gravity * h) + touching_fraction * contact_distance;
@@ -88,11 +84,12 @@ inline Real face_zone(const PairScale& scale) {
     return std::max(scale.contact_distance, scale.face_depth);
 }
 
-/// Distances for the crossing test of round bodies, whose features are the cores (centres or axes). Throughout the
-/// step, the distance between the cores must remain above the sum of the radii. The bodies count as in contact if the
-/// gap between their surfaces is below contact_slack times the shell distance (PairScale::shell). With zero shell
-/// distance, surfaces in contact may overlap by rounding errors. The distance that must remain is then zero, so only
-/// crossings of the cores are found.
+/// Distances for the crossing test of round bodies, whose features are the cores (centres or axes). The cores must stay
+/// further apart than the sum of the radii. Bodies count as in contact if the gap between their surfaces is below
+/// contact_slack times the shell distance (PairScale::shell).
+///
+/// With zero shell distance, surfaces in contact may overlap by rounding errors, so only crossings of the cores are
+/// found.
 inline ContactThreshold threshold_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? ContactThreshold{scale.radii, contact_slack * scale.shell}
                                               : ContactThreshold{};

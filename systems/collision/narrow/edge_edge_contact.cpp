@@ -9,22 +9,19 @@ namespace skerry {
 
 namespace {
 
-// An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Flat edges get no
-// contacts: only the nodes around them keep the contact distance. Two flat edges can therefore come nearer to each
-// other than the contact distance, by at most min_bend / 4 times the width of the faces. This is an eighth of the
-// default contact distance (0.02 edge lengths).
+// Angle between the normals of the two faces of an edge below which the edge counts as flat [rad]. Flat edges get no
+// contacts: the nodes around them keep the contact distance. Two flat edges can come nearer than this distance, by at
+// most min_bend / 4 times the width of the faces: an eighth of its default (0.02 edge lengths).
 constexpr Real min_bend = 0.01;
 
 // Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad]
 // (docs/methods/collision.md 4.4). Wedge adds the tolerance `closing` for rotations within the step: if a contact stops
-// one end of an edge, the other end moves on, and the edge could cross another edge in the same step.
+// one end of an edge, the other end moves on, and the edge could cross another edge.
 //
-// border_angle is needed for an edge E that rests on a face F of another body. E crosses two edges A and B of F, and
-// both contact normals are equal to the normal of F, which is one limit of the range. Suppose that A is flatter than B
-// (smaller angle between the normals of its faces). The slack (Wedge::slack) then lets E sink further at A than at B. E
-// is thus tilted, and the contact normal at B leaves the range, by about 0.01 rad for edges of equal length. Without
-// the tolerance the contact at B would be lost: E would fall onto F, regain the contact and be pushed out, again and
-// again.
+// Example: an edge E rests on a face F, and crosses two edges A and B of F. Both contact normals equal the normal of F,
+// one limit of the range. If A is flatter than B, the slack (Wedge::slack) lets E sink further at A. E is thus tilted,
+// and the contact normal at B leaves the range, by about 0.01 rad for edges of equal length. Without the tolerance E
+// would lose the contact at B, fall onto F and be pushed out, again and again.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -77,9 +74,9 @@ public:
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // The slack is (2 min_bend - b) w1 w2 / (w1 + w2) / 2 with the angle b between the normals of the two faces and
-        // the widths w1, w2 of the faces (docs/methods/collision.md 4.5). The small angle b is replaced by its sine,
-        // fall / other_width, which is equal for both orders of the faces up to rounding.
+        // Slack of docs/methods/collision.md 4.5, with the widths w1, w2 of the faces and the angle b between their
+        // normals: (2 min_bend - b) w1 w2 / (w1 + w2) / 2. The small angle b is replaced by its sine, fall /
+        // other_width, which is equal for both orders of the faces up to rounding.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
@@ -93,10 +90,10 @@ public:
     bool convex() const { return is_axis_ || convex_; }
 
     /// Slack: distance by which another edge that crosses this edge at `fraction` of the length may come nearer than
-    /// the contact distance [m]. It decreases towards the ends of the edge, where the faces are narrower. Reason: an
-    /// edge whose bend (angle between the normals of its faces) is below min_bend gets no contact, so another edge may
-    /// come nearer. Without the slack, the gap would be negative as soon as the bend reaches min_bend, and stacked
-    /// blocks would vibrate for ever.
+    /// the contact distance [m]. It decreases towards the ends, where the faces are narrower.
+    ///
+    /// A flat edge gets no contact, so another edge may already be nearer when the angle between its faces reaches
+    /// min_bend. Without the slack the gap would then be negative, and stacked blocks would vibrate for ever.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
     /// True if a point in the given direction from the edge is nearer to the edge than to the two faces of the edge.

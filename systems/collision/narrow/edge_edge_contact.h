@@ -20,12 +20,13 @@ struct EdgeEdgeContact {
     Real sleep = 0;  // travel of the pair, counted from now, up to which the edges cannot touch [m]
 };
 
-/// Tests two edges for a contact between their interior points. An edge can only touch if the surface is convex at the
-/// edge, and if the contact normal lies between the normals of the two faces of the edge. Otherwise a point and a face
-/// are nearer. Nearly flat edges get no contact, because contacts at the surface's vertices suffice. The axis of a
-/// capsule can touch in all directions, and it can touch nearly flat edges. If the distance exceeds both
-/// `contact_limit` and scale.edge_depth, only `closest` and `sleep` are computed. If the surfaces may overlap, edges
-/// that have passed each other get a contact, too.
+/// Tests two edges for a contact between their interior points. If the distance exceeds both `contact_limit` and
+/// scale.edge_depth, only `closest` and `sleep` are computed. An edge can touch only if
+/// - the surface is convex at the edge, and not nearly flat: there contacts at the vertices suffice; and
+/// - the contact normal lies between the normals of the two faces of the edge; otherwise a point and a face are nearer.
+///
+/// The axis of a capsule can touch in all directions, and also touches nearly flat edges. If the surfaces may overlap,
+/// edges that have passed each other get a contact, too.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real contact_limit, Surfaces surfaces);
 

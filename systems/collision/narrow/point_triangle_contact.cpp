@@ -9,10 +9,9 @@ namespace skerry {
 
 namespace {
 
-// The points that are nearest to a feature of a surface (face, edge, vertex) fill a region, which borders on the
-// regions of the neighbouring features. A point within a tolerance of the border belongs to both features: a contact
-// that is found twice does no harm, but a contact that is lost by rounding errors does. The tolerance is tie_fraction
-// times the distance of the point plus tie_edge_fraction times the edge length.
+// Tolerance at the borders between the regions of points nearest to a face, edge or vertex of a surface: tie_fraction
+// times the distance of the point plus tie_edge_fraction times the edge length. A point within it belongs to both
+// features: a contact found twice does no harm, but a contact lost by rounding errors does.
 constexpr Real tie_fraction = 1e-6;
 constexpr Real tie_edge_fraction = 1e-12;
 
@@ -22,9 +21,9 @@ constexpr Real tie_edge_fraction = 1e-12;
 constexpr Real normal_distance_fraction = 0.1;
 constexpr Real normal_edge_fraction = 1e-6;
 
-// A vertex counts as touching the axis of a capsule if it would touch the axis after a tilt of the axis by at most this
-// angle [rad]. A capsule that lies on an edge thus touches both ends of the edge, even if its axis is slightly tilted.
-// Edges have an equal tolerance (border_angle in edge_edge_contact.cpp).
+// Tilt of the axis of a capsule that the test whether a vertex touches the axis tolerates [rad]. A capsule that lies on
+// an edge thus touches both ends of the edge, even if its axis is slightly tilted. Edges have an equal tolerance
+// (border_angle in edge_edge_contact.cpp).
 constexpr Real axis_tilt = 0.03;
 
 struct Query {
@@ -47,9 +46,9 @@ struct Query {
     }
 };
 
-/// Sum of the unit normals of the two faces at edge k of a triangle. The point of the triangle nearest to the queried
-/// point lies on this edge. `face_normal`: normal of the triangle; it is the result if the edge has only this face. The
-/// result is zero if the other face is nearer to the queried point than the edge.
+/// Sum of the unit normals of the two faces at edge k of a triangle, on which the point of the triangle nearest to the
+/// queried point lies. Zero if the other face is nearer to the queried point than the edge; `face_normal`, the normal
+/// of the triangle, if there is no other face.
 Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face_normal) {
     const Index edge = q.surface.triangles.edge[triangle][k];
     const auto& around = q.surface.edges.triangle[edge];
@@ -64,10 +63,11 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
     return face_normal + q.unit_normal(other);
 }
 
-/// Sum of the unit normals of the faces around a vertex, weighted by the angles of the faces at the vertex. Its scalar
-/// product with the vector to a point is positive outside and negative inside (Baerentzen, Aanaes 2005). allowed(side)
-/// is called for each edge of these faces at the vertex; `side`: vector along the edge, from the vertex. If any call
-/// returns false, the result is zero.
+/// Sum of the unit normals of the faces around a vertex, weighted by their angles at the vertex. Its scalar product
+/// with the vector to a point is positive outside and negative inside (Baerentzen, Aanaes 2005).
+///
+/// Zero if allowed(side) returns false for any edge of these faces at the vertex; `side`: vector along the edge, from
+/// the vertex.
 Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     const VertexTable& vertices = q.surface.vertices;
     const Index self = vertices.node[vertex];
@@ -168,9 +168,9 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
 bool vertex_can_touch_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex,
                            const Vec3& offset, const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
-    // If the axis tilts by the small angle t, the vector from the vertex to the nearest point p of the axis becomes
-    // offset + t * along. Each face at the vertex limits t to angles at which the vertex is nearer to p than the face.
-    // [low, high]: angles that all faces visited so far permit.
+    // If the axis tilts by the small angle t, the vector from the vertex to its nearest point p becomes offset + t *
+    // along. Each face limits t to angles at which the vertex is nearer to p than the face. [low, high]: angles that
+    // all faces visited so far permit.
     const Vec3 along = q.distance * axis.normalized();
     Real low = -axis_tilt, high = axis_tilt;
     const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {

@@ -18,9 +18,10 @@ inline Real rest_distance_squared(const CollisionInputs& inputs, const std::arra
 }
 
 /// True if two features of one body (a point and a triangle, or two edges) are further apart in the rest shape than 2
-/// face_depth, which is half of the mean edge length; false if rest positions are not available. Nearer features belong
-/// to the same piece of the body, for example to the two sides of a thin part. Such features may pass each other when
-/// an element inverts; then the elastic forces have to restore the element.
+/// face_depth, half of the mean edge length; false if rest positions are not available.
+///
+/// Nearer features belong to one piece of the body, for example to the two sides of a thin part. They may pass each
+/// other when an element inverts; then the elastic forces have to restore the element.
 bool was_far_at_rest(const CollisionInputs& inputs, const PairScale& scale, const auto& first, const auto& second) {
     return !inputs.rest_position.empty() &&
            rest_distance_squared(inputs, first, second) > 4 * scale.face_depth * scale.face_depth;

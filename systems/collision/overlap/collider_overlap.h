@@ -15,10 +15,11 @@ namespace skerry {
 std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                            const PlacedSolid& body, Real tolerance);
 
-/// Overlap of a body with a collider, if the collider contains no node and no point of an edge of the body. Call it
-/// only if find_surface_inside has found no overlap. The kind is `around` if the body contains the complete collider.
-/// The kind is `crossing` if a corner, an end or a rim of the collider has entered the body through the interior of a
-/// face, by more than `tolerance` [m].
+/// Overlap of a body with a collider that contains no node and no point of an edge of the body. Call it only if
+/// find_surface_inside has found no overlap. The kind is
+/// - `around` if the body contains the complete collider;
+/// - `crossing` if a corner, an end or a rim of the collider has entered the body through the interior of a face, by
+///   more than `tolerance` [m].
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance);
 

@@ -54,9 +54,9 @@ SimplexOverlap::SimplexOverlap(const Simplex& first, const Simplex& second, Real
     overlapping_ = count_ > 0;
 }
 
-/// Projects both simplices onto the axis `along`, a vector of any length. Returns true if the projections overlap by at
-/// most `tolerance` [m]; otherwise stores the axis and the overlap, and returns false. The direction of the cross
-/// product of two nearly parallel edges is arbitrary, but every direction is a valid axis.
+/// Returns true if the projections of both simplices onto the axis `along` overlap by at most `tolerance` [m];
+/// otherwise stores the axis and the overlap. `along`: vector of any length. The cross product of two nearly parallel
+/// edges has an arbitrary direction, but every direction is a valid axis.
 bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance) {
     const Real length = along.norm();
     if (!(length > 0)) return false;

@@ -15,10 +15,9 @@ struct Simplex {
     Simplex moved(const Vec3& shift) const;
 };
 
-/// Separating axis test of two simplices. The axes are the normals of all faces, and the cross products of an edge of
-/// the first and an edge of the second simplex. The interiors of the simplices overlap if and only if no axis separates
-/// the simplices. Triangles in one plane never overlap, because their common normal separates them. For each axis, the
-/// test stores the distance by which the first simplex would have to move to be separated from the second.
+/// Separating axis test of two simplices. Their interiors overlap if and only if none of the axes separates them. The
+/// axes are the normals of all faces, and the cross products of an edge of the first and an edge of the second simplex.
+/// Triangles in one plane never overlap, because their common normal separates them.
 class SimplexOverlap {
 public:
     /// Tests the axes one after another. The test ends at the first axis along which the simplices overlap by at most

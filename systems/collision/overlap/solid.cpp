@@ -49,10 +49,9 @@ void finish(Solid& solid) {
                               solid.surface_point.end());
 }
 
-/// Side of the line from a to b on which a point lies, in the projection on the plane with x to the right and y up: 1
-/// is left, -1 is right. A point exactly on the line counts as shifted by an infinitesimal vector (e, e^2), and thus
-/// lies on one of the two sides. The line from b to a gives the opposite side. A vertical ray through an edge therefore
-/// hits exactly one of the two triangles at the edge.
+/// Side of the line from a to b on which a point lies, in the projection on the x-y plane: 1 is left, -1 is right. A
+/// point on the line counts as shifted by an infinitesimal vector (e, e^2). So a vertical ray through an edge hits
+/// exactly one of the two triangles at the edge.
 int side_of(const Vec3& point, const Vec3& a, const Vec3& b) {
     const Real x = b.x() - a.x(), y = b.y() - a.y();
     const Real area = x * (point.y() - a.y()) - y * (point.x() - a.x());

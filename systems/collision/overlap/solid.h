@@ -36,9 +36,10 @@ Solid solid_of_tetrahedra(std::span<const Vec3> point, std::span<const std::arra
 /// surface alone.
 Solid solid_of_surface(std::span<const Vec3> point, std::span<const std::array<Index, 3>> triangles);
 
-/// True if a point is inside a solid. A solid of tetrahedra also contains points that are outside by at most
-/// `tolerance` [m]. A closed surface contains a point if the winding number around the point is at least 1; `tolerance`
-/// is not used. An open surface contains no point.
+/// True if a point is inside a solid:
+/// - A solid of tetrahedra also contains points that are outside by at most `tolerance` [m].
+/// - A closed surface contains a point if the winding number around the point is at least 1; `tolerance` is not used.
+/// - An open surface contains no point.
 bool contains(const Solid& solid, const Vec3& point, Real tolerance);
 
 }  // namespace skerry

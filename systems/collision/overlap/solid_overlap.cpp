@@ -137,9 +137,10 @@ void add_normals(const Solid& solid, const std::vector<char>& overlaps, Real sig
     }
 }
 
-/// Directions along which the first solid may leave the second solid. These are the direction from the centre of the
-/// second solid to the centre of the first, and normals of faces of overlapping simplices: outward normals of the
-/// second solid and inward normals of the first.
+/// Candidate directions along which the first solid may leave the second solid:
+/// - the direction from the centre of the second solid to the centre of the first,
+/// - outward normals of the second solid at overlapping simplices,
+/// - inward normals of the first solid at overlapping simplices.
 Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const SimplexPair> pairs) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
@@ -162,9 +163,9 @@ Real extent(std::span<const SimplexPair> pairs, const Vec3& direction) {
     return highest - lowest;
 }
 
-/// The candidate direction with the lowest cost. The cost is the distance by which the first solid leaves the simplices
-/// that it overlaps now, plus the extent of the region of overlap along the direction. Without the extent, a direction
-/// along a long region of overlap would seem cheap, although the motion would meet further simplices.
+/// The candidate direction with the lowest cost: the distance by which the first solid leaves the simplices that it
+/// overlaps now, plus the extent of the overlaps along the direction. The extent makes a motion along a long region
+/// of overlap expensive, because it would meet further simplices.
 Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                     std::span<const SimplexPair> pairs) {
     const Directions directions = likely_directions(first, second, pairs);
@@ -183,9 +184,7 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
 }
 
 /// Distance by which the first solid has to move along `direction` until it overlaps no simplex of the second solid
-/// [m]. Each iteration moves the first solid out of the simplices that it overlaps at its current position. If
-/// max_tries iterations do not suffice, the result is the distance that takes all points of the first solid past all
-/// points of the second.
+/// [m]. Each iteration moves the first solid out of the simplices that it overlaps at its current position.
 Real exit_distance_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int max_tries = 16;
     Real moved = 0;
@@ -195,12 +194,13 @@ Real exit_distance_along(const PlacedSolid& first, const PlacedSolid& second, Re
         if (!(further > 0)) return moved;
         moved += further;
     }
+    // Too many iterations: all points of the first solid move past all points of the second.
     return exit_distance_of_points(first, second, direction);
 }
 
-/// Finds the separating motion if one of the solids contains the other. The motion takes all points of the first solid
-/// past all points of the second, along the line between the centres or along a coordinate axis; the shortest of these
-/// motions is used.
+/// Finds the separating motion if one of the solids contains the other. It is the shortest motion along the line
+/// between the centres or along a coordinate axis that takes all points of the first solid past all points of the
+/// second.
 void pass_over(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));

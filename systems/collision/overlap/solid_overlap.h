@@ -24,16 +24,17 @@ struct PlacedSolid {
     Aabb box() const { return {solid.box.lower + shift, solid.box.upper + shift}; }
 };
 
-/// Overlap of two solids. The solids overlap if a simplex of the first and a simplex of the second overlap by more than
-/// `tolerance` [m], or if one solid is inside the closed surface of the other. If the two surfaces cross, `direction`
-/// is close to the direction of the shortest separating motion. If one solid contains the other, the separating motion
-/// takes all points of the first solid past all points of the second; the shortest of a few such motions is used.
+/// Overlap of two solids. They overlap if two of their simplices overlap by more than `tolerance` [m], or if one solid
+/// is inside the closed surface of the other. The result contains a separating motion:
+/// - If the surfaces cross, `direction` is close to the direction of the shortest separating motion.
+/// - If one solid contains the other, the motion is the shortest of a few motions that take all points of the first
+///   solid past all points of the second.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
-/// Finds a surface point of `solid` that touches the open `surface` from behind. The distance of the point from a
-/// triangle of `surface` is at most `tolerance` [m], and the outward normal of the solid at the point forms an acute
-/// angle with the normal of the triangle. At so small a distance, contacts cannot tell on which side of the surface the
-/// solid is. The returned overlap moves the solid further back by twice the tolerance.
+/// Finds a surface point of `solid` that touches the open `surface` from behind, so closely that contacts cannot tell
+/// on which side of the surface the solid is. The point is at most `tolerance` [m] from a triangle of `surface`, and
+/// the outward normal of the solid at the point forms an acute angle with the normal of the triangle. The returned
+/// overlap moves the solid further back by twice the tolerance.
 std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
 
 }  // namespace skerry

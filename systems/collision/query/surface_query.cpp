@@ -14,8 +14,8 @@ namespace {
 constexpr Real rounding = 16 * std::numeric_limits<Real>::epsilon();
 
 /// A ray, sheared so that it is parallel to the axis of its largest component. The sign of one 2x2 determinant then
-/// shows on which side of an edge the ray passes. The two triangles at an edge compute this determinant with the same
-/// rounding errors, so no ray passes between them.
+/// shows on which side of an edge the ray passes. No ray passes between the two triangles at an edge, because both
+/// compute this determinant with the same rounding errors.
 class ShearedRay {
 public:
     explicit ShearedRay(const Ray& ray) : ray_(ray) {

@@ -7,13 +7,16 @@
 
 namespace skerry {
 
-/// Lists all pairs of objects that could come close to each other before the next broad search. The next broad search
-/// is due when a travel bound reaches body_valid_until or collider_valid_until, which this function sets. The boxes of
-/// all objects are enlarged accordingly, and pairs of overlapping boxes are listed in key order. A pair that existed
-/// before keeps its candidates, unless one of its partners is forgotten (added or moved by the user). Bodies without a
-/// surface and pairs without a deformable body are not listed. Overlapping boxes are found in a grid (BoxGrid); planes
-/// are compared with every body. Requires memory.body_travel_bound, body_reach, body_forgotten and collider_forgotten
-/// of this step. Runs in parallel over blocks of bodies, then over blocks of pairs.
+/// Lists all pairs of objects that could come close to each other before the next broad search, in key order. This
+/// search is due when a travel bound (contact_reach.h) reaches body_valid_until or collider_valid_until, which this
+/// function sets. Requires memory.body_travel_bound, body_reach, body_forgotten and collider_forgotten of this step.
+/// Runs in parallel over blocks of bodies, then over blocks of pairs.
+///
+/// - The boxes of all objects are enlarged accordingly. Overlapping boxes are found in a grid (BoxGrid); planes are
+///   compared with every body.
+/// - A pair that existed before keeps its candidates, unless one of its partners is forgotten (added or moved by the
+///   user).
+/// - Bodies without a surface and pairs without a deformable body are not listed.
 void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                 SearchState& search, PairTable& pairs);
 

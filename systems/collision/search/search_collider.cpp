@@ -67,10 +67,11 @@ private:
         const bool has_edges = inputs_.body.edges[pair_.first].size() > 0;
         if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinity;
         const Vec3 middle = local(nearest_node_);
-        // Two lower bounds for the complete body; the larger one is used. `hull`: the tangent at the node nearest to
-        // the collider (hull_tangent) gives a lower bound of the distance of every node; `hull` is the least of these
-        // bounds. `flat`: distance that all nodes can move while they stay in one flat region of the collider, where
-        // only nodes can touch.
+        // Two lower bounds for the complete body; the larger one is used:
+        // - `hull`: smallest lower bound of the distance of a node, by the tangent at the node nearest to the collider
+        //   (hull_tangent).
+        // - `flat`: distance that all nodes can move within one flat region of the collider, where only nodes can
+        //   touch.
         Real hull = infinity, flat = infinity;
         const Index region = flat_region(geometry_, middle);
         const HullTangent tangent = hull_tangent(geometry_, middle);

@@ -19,9 +19,9 @@ namespace skerry {
 
 namespace {
 
-// Numbers of leaves whose data is cached. `cached_leaves`: two bodies that lie on each other touch with about ten
-// leaves. `cached_leaves_of_self`: a body that is paired with itself has many pairs of leaves, and the second leaf
-// changes with each pair; the data of 128 leaves fit into the second-level cache of a processor.
+// Number of leaves whose data is cached, for two bodies and for a body that is paired with itself. Two bodies that lie
+// on each other touch with about ten leaves. In a body paired with itself, the second leaf changes with each pair; the
+// data of 128 leaves fit into the second-level cache of a processor.
 constexpr std::size_t cached_leaves = 16, cached_leaves_of_self = 128;
 template <class Features, std::size_t Count>
 using CachedLeaves = std::array<Features, Count>;
@@ -133,10 +133,11 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        // The core of a sphere or cylinder is a point in this search. Only this point is compared with the faces and
-        // axes of the other body; nodes of the other body are not compared with it. No contact is lost: if a node is
-        // nearest to the core, the test of a face at the node finds it. A node inside a flat surface does not obstruct
-        // the sphere. For two spheres, only the core of the first is compared with the second.
+        // The core of a sphere or cylinder is a point in this search. It is compared with the faces and axes of the
+        // other body, but not with its nodes. No contact is lost:
+        // - If a node is nearest to the core, the test of a face at the node finds it.
+        // - A node inside a flat surface does not obstruct the sphere.
+        // For two spheres, only the core of the first is compared with the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, first_.edges), &other = features_of(b, second_.edges);

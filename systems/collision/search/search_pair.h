@@ -21,12 +21,13 @@ struct PairToSearch {
     std::span<const LeafPair> leaf_pairs{};
 };
 
-/// Lists the close features of a pair in feature order, each combination of two features once. For two bodies, these
-/// are points of either body with triangles of the other body, and edges with edges. They are found with the trees of
-/// the two bodies, whose boxes must be computed from the present positions. A body and a collider are searched by
-/// search_collider. If a body is paired with itself, only the features of leaf_pairs are compared; features that share
-/// a node, or whose distance in the rest shape is below the contact distance, are left out. Returns the travel of the
-/// pair up to which the list is complete (PairTable::travel_bound) [m].
+/// Lists the close features of a pair of bodies in feature order: points of either body with triangles of the other,
+/// and edges with edges, each combination once. Returns the travel of the pair up to which the list is complete
+/// (PairTable::travel_bound) [m]. Uses the trees of both bodies, whose boxes must be computed from the present
+/// positions.
+///
+/// If a body is paired with itself, only the features of leaf_pairs are compared. Features that share a node, or whose
+/// distance in the rest shape is below the contact distance, are left out.
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 
@@ -35,8 +36,8 @@ Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::s
 /// may touch. Returns the travel of the pair up to which the list is complete (PairTable::travel_bound) [m].
 Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found);
 
-/// True if an edge of one surface passes through a triangle of the other surface. The boxes of both trees must be
-/// computed from the present positions. Surfaces that only touch do not cross. If a body is paired with itself,
+/// True if an edge of one surface passes through a triangle of the other surface. Surfaces that only touch do not
+/// cross. The boxes of both trees must be computed from the present positions. In a body that is paired with itself,
 /// features whose distance in the rest shape is at most half of the mean edge do not count.
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box);
 

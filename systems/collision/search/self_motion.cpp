@@ -31,9 +31,9 @@ struct RigidDisplacement {
     Mat3 rotation = Mat3::Identity();
 };
 
-/// Fits a rigid motion to the displacements of the surface nodes. The rotation vector w is a least squares fit of
-/// cross(w, r) to u at all nodes, with the position r and the displacement u of a node relative to the centres. For
-/// large rotations the fit is poor, but the bounds hold for any rotation.
+/// Fits a rigid motion to the displacements of the surface nodes. With the position r and the displacement u of a node
+/// relative to the centres, the rotation vector w is a least squares fit of cross(w, r) to u. For large rotations the
+/// fit is poor, but the bounds of self_motion.h hold for any rotation.
 RigidDisplacement rigid_displacement(const CollisionInputs& inputs, Index body, const SelfSearch& self,
                                      auto&& position) {
     RigidDisplacement rigid;
@@ -84,9 +84,9 @@ constexpr auto leaves_before = [](const LeafPair& a, const LeafPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
 };
 
-/// Lists the pairs of leaves that are close to each other. The spare distance M of a pair (self_motion.h) follows from
-/// its boxes; a pair that was listed before keeps its previous spare distance if that is larger. Tree nodes are in
-/// depth-first order, so a forward search from each leaf finds the pairs sorted by first and second leaf.
+/// Lists the pairs of leaves that are close to each other, sorted by first and second leaf. The spare distance M of a
+/// pair (self_motion.h) follows from its boxes; a pair that was listed before keeps its previous spare distance if that
+/// is larger.
 void list_close_pairs(const SelfMotion& motion, std::span<const Aabb> box, const SelfSearch& self,
                       LeafPairTable& pairs) {
     const Index root = motion.root(), end = motion.inputs.body.bvh_nodes[motion.body].end;
@@ -98,6 +98,7 @@ void list_close_pairs(const SelfMotion& motion, std::span<const Aabb> box, const
     std::size_t old = 1;
     for (Index a = root; a < end; ++a) {
         if (motion.inputs.bvh_node[a].count == 0) continue;
+        // Tree nodes are in depth-first order, so this search finds the second leaves in ascending order.
         for (Index b = a; b < end;) {
             const BvhNode& other = motion.inputs.bvh_node[b];
             const Real squared = distance_squared(box[a], box[b]);
@@ -133,9 +134,8 @@ void find_leaves(const CollisionInputs& inputs, Index body, SelfSearch& self) {
     }
 }
 
-/// Tests whether a sorted list contains a pair of leaves. The pairs are asked for in the order of the candidates, and
-/// many consecutive candidates have the same first leaf. So for first leaves that were asked for lately, the class
-/// stores where in the list their pairs begin.
+/// Tests whether a sorted list contains a pair of leaves. Many consecutive calls have the same first leaf, because they
+/// follow the order of the candidates. So the class stores for recent first leaves where in the list their pairs begin.
 class SortedLeafPairs {
 public:
     explicit SortedLeafPairs(std::span<const LeafPair> pairs) : pairs_(pairs) {}

@@ -1,30 +1,29 @@
 // Candidate list of a body with itself: the close pairs of leaves in the tree of the body, and bounds on the motion
-// after which the features of a pair must be compared again.
+// after which the features of a pair must be compared again (docs/methods/collision.md 4.6).
 //
-// The travel of the body (contact_reach.h) bounds the motion of its fastest node. Features of one body that are close
-// to each other mostly move together, so the travel overestimates the change of their distance D. A sharper bound uses
-// two leaves a, b of the tree. Let X_i and x_i be the positions of mesh node i at an earlier time s and at the time t.
-// Let u_i = x_i - Q X_i be its displacement without a rotation Q of the whole body. Any rotation is permitted;
-// rigid_displacement computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i of a and j of b.
-// Features f of a and g of b satisfy
+// Features of one body that are close to each other mostly move together. So the travel of the body (contact_reach.h),
+// which bounds the motion of its fastest node, overestimates the change of their distance. Sharper bounds hold for two
+// leaves a, b of the tree, from an earlier time s to the present time t:
 //
-//     D(t) >= D(s) - U(a, b).
+//   D(t)     distance at time t between a feature of a and a feature of b
+//   u_i      displacement x_i(t) - Q x_i(s) of mesh node i without a rotation Q of the whole body; the bounds hold
+//            for any Q, and rigid_displacement() fits one
+//   U(a, b)  largest |u_i - u_j| for mesh nodes i of a and j of b
+//   R(a, b)  upper bound of the gap that can close in the coming step (reach in contact_reach.h), computed like U
+//            from velocities in place of displacements
+//   M(a, b)  spare distance of the pair of leaves: features that are not in the list satisfy D(s) >= zone + M(a, b)
+//   zone     distance below which features are tested in each step (PairScale)
 //
-// Reason: take the weights of the mesh nodes for the nearest points at time t. The points with these weights at time s
-// were at least D(s) apart, and the vector between them has changed by at most U(a, b), apart from the rotation.
-// R(a, b) is an upper bound of the gap that can close in the coming step (reach in contact_reach.h). It is computed in
-// the same way, from velocities in place of displacements. Each pair of leaves has a spare distance M(a, b): features
-// of the pair that are not in the list satisfy D(s) >= zone + M(a, b). So they stay outside of the zone until U(a, b)
-// exceeds M(a, b).
-//
-// 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t. No update is needed while
-//    U(root, root) + R(root, root) is below the smallest M.
-// 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of pairs with M <= R
+// 1. Motion: D(t) >= D(s) - U(a, b). Reason: the two points that are nearest at time t were at least D(s) apart at time
+//    s. Apart from the rotation, the vector between them has changed by at most U(a, b).
+// 2. Update: a new time t replaces s, and U(a, b) is subtracted from M(a, b). No update is needed while U(root, root) +
+//    R(root, root) is below the smallest M.
+// 3. Comparison: the list is complete for a step if M > R for all pairs of leaves. The features of pairs with M <= R
 //    are compared again, and those with D(t) < zone + max(m, k S, R) are listed; this maximum is the new M. m is
-//    SelfMotion::skin, S(a, b) bounds the relative motion in one step, and k is steps_ahead. The term k S gives fast
-//    pairs a larger M, so that they are not compared in every step.
-// 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself represents all other
-//    pairs. If its M is not above its R, the close pairs are listed again.
+//    SelfMotion::skin, S bounds the relative motion in one step, and k is steps_ahead. The term k S gives fast pairs a
+//    larger M, so that they are not compared in every step.
+// 4. Rows: only pairs of leaves that are close to each other have a row. The row of the root with itself represents all
+//    other pairs. If its M is not above its R, the close pairs are listed again.
 //
 // All bounds and D(s) are computed from boxes.
 #pragma once
@@ -89,24 +88,27 @@ inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionS
 /// Makes room for all nodes, features and trees.
 void resize(const CollisionInputs& inputs, SelfSearch& self);
 
-/// If the candidate list is complete for the step that begins, returns a lower bound of the spare distances that are
-/// left [m], otherwise 0. First the largest relative motion of two nodes since the last update is compared with the
-/// smallest spare distance. If this test fails, the relative motion of each pair of leaves is subtracted from its spare
-/// distance, and the present positions are stored as positions of the last update.
+/// Returns a lower bound of the spare distances that are left [m] if the candidate list is complete for the step that
+/// begins, otherwise 0.
+///
+/// First compares the largest relative motion of two nodes since the last update with the smallest spare distance. If
+/// this test fails, subtracts the relative motion of each pair of leaves from its spare distance, and stores the
+/// present positions as those of the last update.
 Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
 /// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new
-/// spare distances. If `compare_all` is true, all close pairs of leaves are compared. Otherwise update_spare must have
-/// been called in this step. The boxes of the tree must be computed from the present positions. Removes the candidates
-/// of the pairs in `searched`, because the comparison finds them again, and the candidates of pairs that are no longer
-/// close.
+/// spare distances. The boxes of the tree must be computed from the present positions.
+///
+/// If `compare_all` is true, all close pairs of leaves are compared; otherwise update_spare must have been called in
+/// this step. Removes the candidates of the pairs in `searched`, which the comparison finds again, and of pairs that
+/// are no longer close.
 void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool compare_all, Index p, PairTable& pairs);
 
 /// Smallest spare distance [m].
 Real smallest_spare(std::span<const LeafPair> pairs);
 
-/// True if the nodes move so nearly at their present velocities that the motion of the step is within the bound R of
-/// all pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed, so
+/// True if the motion of the step is within the bound R of all pairs of leaves, because the nodes move nearly at their
+/// present velocities. R exceeds the relative motion at constant velocities by at least the reach at zero speed, so
 /// each of two nodes may deviate by half of that reach.
 bool moves_as_expected(const SelfMotion& motion, const StepMotion& step);
 

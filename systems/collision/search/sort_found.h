@@ -12,8 +12,8 @@
 namespace skerry {
 
 /// Greatest number of candidates that are sorted by counting (a pair of bodies has some hundreds). The place of a
-/// candidate is then the number of candidates of the same kind with a lower key. Each candidate is compared with all
-/// others, several at a time in a register. This takes less time than the mispredicted branches of a usual sort.
+/// candidate is then the number of candidates of the same kind with a lower key. The comparisons run several at a time
+/// in a register, faster than the mispredicted branches of a usual sort.
 inline constexpr std::size_t counted_at_most = 512;
 
 inline constexpr auto feature_before = [](const FoundCandidate& a, const FoundCandidate& b) {

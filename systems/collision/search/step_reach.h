@@ -11,11 +11,11 @@ struct BodyReach {
     Real in_world;  // bound of the motion relative to the world [m]
 };
 
-/// Distance by which a body may close a gap in this step. To bound the closing distance of two bodies, add their
-/// `in_world`, or their `in_frame` and frame_reach(). The bound is computed from the greatest speed in the last step,
-/// which check_state has measured. If `measure` is true, the present velocities of the surface are taken into account,
-/// too, for example for a body that has not moved yet. They are always taken into account for a moving mesh collider,
-/// because its script may start the motion at any time.
+/// Distance by which a body may close a gap in this step, from its greatest speed in the last step (measured by
+/// check_state). To bound the closing distance of two bodies, add their `in_world`, or their `in_frame` and
+/// frame_reach(). The present velocities of the surface count, too:
+/// - if `measure` is true, for example for a body that has not moved yet;
+/// - always for a moving mesh collider, because its script may start the motion at any time.
 BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure,
                      Real h);
 

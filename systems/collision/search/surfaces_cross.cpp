@@ -85,8 +85,8 @@ private:
     }
 
     /// True if an edge pq that passes through a face of its own body counts as a crossing. Both ends must have been far
-    /// from the face at rest. Neither end may lie in the plane of the face up to rounding errors, because edges in a
-    /// flat side of the body do so without a crossing.
+    /// from the face at rest. Neither may lie in the plane of the face up to rounding errors, because edges in a flat
+    /// side of the body do so without a crossing.
     bool counts_in_self(Index p, Index q, const std::array<Index, 3>& face) const {
         // least height of an end above the plane, as a fraction of least_rest_distance_
         constexpr Real rounding = 1e-9;

@@ -7,10 +7,10 @@
 
 namespace skerry {
 
-/// Descends two trees from node a of one and node b of the other. Calls visit(c, d) for each pair of leaves that it
-/// reaches, until a call returns true. Returns true if a call returned true. near(c, d): true if two tree nodes are
-/// close to each other; the descent ends at pairs of nodes that are not. `self`: a and b belong to the same tree, which
-/// is paired with itself; each node is then also paired with itself.
+/// Descends two trees from node a of one and node b of the other, and calls visit(c, d) for each pair of leaves that it
+/// reaches, until a call returns true. Returns true if a call returned true.
+/// - near(c, d): true if two tree nodes are close to each other; the descent ends at pairs of nodes that are not.
+/// - `self`: a and b belong to the same tree, which is paired with itself; each node is then also paired with itself.
 template <class Near, class Visit>
 bool any_leaf_pair(std::span<const BvhNode> node, Index a, Index b, bool self, const Near& near, const Visit& visit) {
     if (!near(a, b)) return false;

@@ -116,9 +116,9 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// For each tetrahedron of a block: |F'|^2 divided by the squared leeway [1/s^2]; 0 in an unused lane. F' = [v_k - v_0]
-/// [X_k - X_0]^-1 is the rate of the deformation gradient F, with the velocities v and rest positions X of the corners.
-/// The leeway is a factor on the allowed change of F.
+/// Squared rate |F'|^2 of the deformation gradient F of each tetrahedron of a block, divided by the squared leeway (a
+/// factor on the allowed change of F) [1/s^2]; 0 in an unused lane. With the velocities v and rest positions X of the
+/// corners, F' = [v_k - v_0] [X_k - X_0]^-1.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& difference) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -133,11 +133,12 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
 }
 
 /// Squared deformation rates of the tetrahedra of a block, divided by the squared leeways (factors on the allowed
-/// change of the deformation gradient F) [1/s^2]. The deformation rate is the smaller of two values: the norm |F'| of
-/// the rate of F, and the greatest speed of a corner relative to corner 0, divided by the smallest altitude.
+/// change of the deformation gradient F) [1/s^2]. If no tetrahedron exceeds `rate` [1/s], as in most blocks, all lanes
+/// may be 0. `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
 ///
-/// The second value is cheap. If it shows that no tetrahedron exceeds `rate` [1/s], as in most blocks, all lanes are 0.
-/// `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
+/// The deformation rate is the smaller of two values:
+/// - the norm |F'| of the rate of F,
+/// - the greatest speed of a corner relative to corner 0, divided by the smallest altitude (cheap to compute).
 Real8 squared_deformation_rate(const CheckInputs& state, std::size_t block, Real rate, Real max_relative_speed) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
@@ -187,9 +188,10 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
 }
 
 /// Greatest |F'|^2 of the elements of a block, divided by their squared leeways (factors on the allowed change of F)
-/// [1/s^2]. F' is the rate of the deformation gradient F. Returns 0 for inversion barriers, and for a block without a
-/// node marked in `beside_fast`. These marks are set at the corners of fast tetrahedra, so all tetrahedra of such a
-/// block are slow.
+/// [1/s^2]. F' is the rate of the deformation gradient F. Returns 0 in two cases:
+/// - The elements are inversion barriers.
+/// - No node of the block is marked in `beside_fast`. Marked nodes are the corners of fast tetrahedra, so all
+///   tetrahedra of the block are slow.
 Real check_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     // the limit applies to means of F over tetrahedra, but F of an inversion barrier is F of one tetrahedron
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
@@ -240,10 +242,9 @@ bool may_deform_faster(Executor& executor, const CheckInputs& state, std::size_t
     });
 }
 
-/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. F of an element is a
-/// mean over tetrahedra, so elements are tested only beside tetrahedra that exceed `rate`. Cheap tests come first, and
-/// the function ends as soon as a test shows that no element exceeds `rate`. `max_relative_speed`: upper bound on the
-/// relative speed of two nodes of the body [m/s].
+/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. Cheap tests come first.
+/// An element is tested only beside tetrahedra that exceed `rate`, because its F is a mean over tetrahedra.
+/// `max_relative_speed`: upper bound on the relative speed of two nodes of the body [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate,
                       Real max_relative_speed, std::span<std::uint8_t> beside_fast) {
     if (!may_deform_faster(executor, state, body, rate)) return 0;

@@ -16,10 +16,12 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
-/// Deformation rate of the fastest element, divided by the leeway of this element. The deformation rate is the smaller
-/// of two values: the norm |F'| of the rate of the deformation gradient F, and the greatest speed of a corner of a
-/// tetrahedron relative to its corner 0, divided by the smallest altitude of the tetrahedron. The leeway is a factor on
-/// max_strain_step, the largest change of F that a step may make.
+/// Deformation rate of the fastest element, divided by the leeway of this element. The leeway is a factor on
+/// max_strain_step, the largest change of the deformation gradient F that a step may make. The deformation rate is the
+/// smaller of two values:
+/// - the norm |F'| of the rate of F,
+/// - the greatest speed of a corner of a tetrahedron relative to its corner 0, divided by the smallest altitude of the
+///   tetrahedron.
 struct StrainRate {
     Real rate = 0;          // rate of the fastest element; 0 if no element exceeds the given rate [1/s]
     Index body = no_index;  // body of the fastest element: row of BodyTable
@@ -30,9 +32,11 @@ struct StepVerdict {
     StepFault fault = StepFault::none;
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, if one node causes the fault
-    // Size of the fault. For too_fast: norm of the change of F in this step, divided by the leeway of the tetrahedron.
-    // For too_far: spacing of floating-point coordinates, divided by the mean edge. For too_stiff: longest stable step
-    // [s]. Not used for not_finite and unsolved.
+    // Size of the fault:
+    // - too_fast: norm of the change of F in this step, divided by the leeway of the tetrahedron;
+    // - too_far: spacing of floating-point coordinates, divided by the mean edge;
+    // - too_stiff: longest stable step [s];
+    // - not_finite and unsolved: not used.
     Real value = 0;
     Index tetrahedron = no_index;  // tetrahedron t that causes the fault, if there is one: lane t % 8 of block t / 8
     StrainRate fastest = {};       // fastest element; not set if the fault is not_finite
@@ -114,15 +118,17 @@ struct SpeedOutputs {
 /// elements have the leeway 1. Implicit elements may deform more in a step, because they make no step unstable.
 inline constexpr Real implicit_leeway = 5;
 
-/// Writes the greatest node speeds to `speed`, and returns the first fault in body order. A fault is a velocity that is
-/// not finite, or an element whose deformation gradient F would change too much in this step of length `h` [s].
-/// Parallel over node blocks and bodies.
+/// Tests the velocities and the deformation in a step of length `h` [s]. Writes the greatest node speeds to `speed`,
+/// and returns the first fault in body order: a velocity that is not finite, or an element whose deformation gradient F
+/// would change too much. Parallel over node blocks and bodies.
 ///
-/// The change of F (Frobenius norm) must not exceed `max_strain_step` times the leeway of the element. F of an element
-/// is a mean of F over tetrahedra, so it can change too much only if F of a tetrahedron does. An element is therefore
-/// tested only if one of its tetrahedra changes too much. A tetrahedron is tested only if two of its corners move apart
-/// by more than the allowed change of F times its smallest altitude. The verdict names the tetrahedron that deforms
-/// fastest. Common motion of all nodes and slow rotation of a large body cause no fault.
+/// The change of F (Frobenius norm) must not exceed `max_strain_step` times the leeway of the element. Common motion of
+/// all nodes and slow rotation of a large body cause no fault. The verdict names the tetrahedron that deforms fastest.
+/// Simple conditions decide which tests are made:
+/// 1. A tetrahedron is tested if two of its corners move apart by more than the allowed change of F times its smallest
+///    altitude.
+/// 2. An element is tested if one of its tetrahedra changes too much, because F of an element is a mean of F over
+///    tetrahedra.
 ///
 /// Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the
 /// smallest altitude of the body. This test also rejects fast rotation of a large body.
@@ -137,8 +143,8 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
 StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
 /// Upper limit on the spacing of floating-point coordinates, as a fraction of the mean edge of a body. A step lasts
-/// about as long as sound takes to cross an edge. So at this spacing a node slower than a millionth of the speed of
-/// sound moves by less than the spacing in a step, and rounding can suppress its motion.
+/// about as long as sound takes to cross an edge. So at a larger spacing, rounding could suppress the motion of nodes
+/// that move at a millionth of the speed of sound.
 inline constexpr Real coarsest_spacing = 1e-6;
 
 /// Finds the first body that is too far from the origin for its size. One node per body is tested, because the size of

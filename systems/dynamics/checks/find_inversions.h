@@ -85,10 +85,10 @@ struct InversionBudgets {
 
 /// Finds the tetrahedra that a step of length `h` [s] inverts. Parallel over parts of bodies.
 ///
-/// A tetrahedron cannot invert until a corner has moved by half of the width of the tetrahedron, the least distance of
-/// two parallel planes that enclose it. So a tetrahedron is checked only after its body may have moved that far: narrow
-/// tetrahedra often, all others rarely. Each check of a block writes a travel budget, the distance that the body may
-/// move before the next check. For a block too narrow for a budget, only every eighth check computes a new one.
+/// A tetrahedron cannot invert until a corner has moved by half of its width, the least distance of two parallel planes
+/// that enclose it. So each check of a block of tetrahedra writes a travel budget: the distance that the body may move
+/// before the next check. Blocks with narrow tetrahedra are checked often, all others rarely. For a block too narrow
+/// for a budget, only every eighth check computes a new one.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 

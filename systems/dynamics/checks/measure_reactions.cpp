@@ -40,8 +40,8 @@ void add_axes(const ReactionInputs& inputs, const Vec3& moment_point, std::size_
 }
 
 /// Adds the reaction on a rigid body that attachment `a` holds: the change of the body's momentum (inputs.kick) minus
-/// the impulses of weight, loads and contacts on its nodes. For a held implicit body, adds only the moment that holds
-/// its frame, because the reactions on its nodes are added one by one.
+/// the impulses of weight, loads and contacts on its nodes. A held implicit body adds only the moment that holds its
+/// frame, because the reactions on its nodes are added one by one.
 void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
@@ -67,10 +67,9 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
 }
 
 /// Adds the impulses on held nodes that come from the added inertia of the implicit elements (docs/methods/clusters.md
-/// 1). This inertia couples the nodes of an element: a velocity change dv_k of a moving node k requires the impulse
-/// beta c V (g_k.g_n) dv_k on each held node n. The element has the factor beta (inertia_factor()), the volume V,
-/// the shape gradients g, and the assumed modulus c (stiffness that the implicit integration assumes). Velocity changes
-/// by damping do not count.
+/// 1). An element has beta = inertia_factor(), the volume V, the shape gradients g, and the assumed modulus c. A
+/// velocity change dv_k of its moving node k requires the impulse beta c V (g_k.g_n) dv_k on each held node n. Velocity
+/// changes by damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_factor(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);

@@ -102,10 +102,11 @@ struct ReactionInputs {
 /// Writes the impulse and moment of each attachment on its nodes, one row per attachment. Moments are about
 /// `moment_point`. `kick`: time for which forces act [s]. `node_impulse`: work memory, by node. Sequential.
 ///
-/// The impulse of an attachment is the change of momentum of its nodes in this step, minus the impulses of element
-/// forces, weight, loads and contacts. The momentum includes the inertia of implicit elements. If several attachments
-/// hold a node or a rigid body, the impulse counts for the last of them, whose motion the node or body follows.
-/// Attachments of sleeping bodies and of colliders get rows of zeros.
+/// The impulse is the change of momentum of the nodes in this step, minus the impulses of element forces, weight, loads
+/// and contacts. The momentum includes the inertia of implicit elements.
+/// - If several attachments hold a node or a rigid body, the impulse counts for the last of them, whose motion the node
+///   or body follows.
+/// - Attachments of sleeping bodies and of colliders get rows of zeros.
 void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

@@ -56,20 +56,21 @@ struct WorkInputs {
 };
 
 /// Sums impulse and work of the loads on all nodes, and of the forces that hold nodes with inverse mass 0. A holding
-/// force is the opposite of `force`. Nodes of sleeping bodies do not count, because the forces that hold them are
-/// unknown. Ghosts (copies of bodies of other ranks) do not count either, because their owners count them. Sums run
-/// over fixed groups of nodes, in a fixed order.
+/// force is the opposite of `force`. Sums run over fixed groups of nodes, in a fixed order. Two kinds of nodes do not
+/// count:
+/// - nodes of sleeping bodies, because the forces that hold them are unknown;
+/// - ghosts (copies of bodies of other ranks), because their owners count them.
 ///
 /// Three times occur [s]: the step length `h`, the force interval `kick` (time for which forces act), and `lag`, which
 /// is half of the length of the previous step, or 0 with leapfrog. For a force F on a node:
 /// - The impulse is kick F.
 /// - A load does the work F . (displacement in the step). The displacement is h velocity_next in symplectic Euler. With
-/// leapfrog the displacement of a free node is h (velocity + velocity_next) / 2.
-/// - If the load on a free node has changed by dF since the last step, its work is greater by lag dF . velocity. The
-/// reason: each load acts over half of the previous step and half of this step.
-/// - A holding force has two parts. The part that balances weight and loads does work over h, the part that balances
-/// element forces over `kick`. For an implicit body both parts do work over `kick`, because strain_implicit_bodies has
-/// scaled `force` to this time.
+///   leapfrog the displacement of a free node is h (velocity + velocity_next) / 2.
+/// - A load on a free node that has changed by dF since the last step does the additional work lag dF . velocity,
+///   because each load acts over half of the previous step and half of this step.
+/// - A holding force does work over h with the part that balances weight and loads, and over `kick` with the part that
+///   balances element forces. For an implicit body both times are `kick`, because strain_implicit_bodies has scaled
+///   `force` to this time.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

@@ -8,13 +8,11 @@
 
 namespace skerry {
 
-/// Statistics of the ratio of present volume to rest volume, over some tetrahedra or elements. `smallest`: the smallest
-/// ratio; NaN counts as the smallest. `item`: index i of the tetrahedron or element with the smallest ratio, which is
-/// in lane i % 8 of block i / 8. `near_inversion`: number of ratios below a limit (0.1 unless another one is given).
-/// `inverted`: number of ratios below 0.
+/// Statistics of the ratio of present volume to rest volume, over some tetrahedra or elements.
 struct VolumeRatios {
-    Real smallest;
-    Index item;
+    Real smallest;  // smallest ratio; NaN counts as the smallest
+    Index item;     // tetrahedron or element with the smallest ratio: lane item % 8 of block item / 8
+    // numbers of ratios below a limit (0.1 unless another one is given), and below 0
     Index near_inversion = 0, inverted = 0;
 };
 inline constexpr Real near_inversion = 0.1;

@@ -13,10 +13,11 @@ struct GuardOutputs {
 };
 
 /// Activates the guard (inversion barrier) of every tetrahedron whose moving corners all belong to one cluster. A
-/// cluster is a set of moving nodes that implicit elements connect; guards themselves connect no nodes. An active guard
-/// gets the volume of its tetrahedron and an assumed modulus, the stiffness that the implicit integration assumes.
-/// stiffen_clusters raises this modulus when the guard is compressed. Other guards get volume 0 and modulus 0. The
-/// assumed modulus of an already active guard does not decrease. Sequential; allocates.
+/// cluster is a set of moving nodes that implicit elements connect; guards themselves connect no nodes. Sequential;
+/// allocates.
+/// - An active guard gets the volume of its tetrahedron and an assumed modulus, the stiffness that the implicit
+///   integration assumes. stiffen_clusters raises this modulus when the guard is compressed; here it does not decrease.
+/// - All other guards get volume 0 and modulus 0.
 void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Real> inverse_mass,
                 const GuardOutputs& out);
 

@@ -19,10 +19,10 @@ struct ClusterInputs {
 };
 
 /// Builds the clusters, which are sets of moving nodes that implicit elements connect, and inverts their inertia
-/// matrices
+/// matrices A (docs/methods/clusters.md 1). M is the diagonal matrix of lumped masses and `step` is body_cluster_step.
+/// Implicit element e has the assumed modulus c_e, the volume V_e, and the shape gradient g_k at node k:
 ///     A_kl = M_kl + beta sum_e c_e V_e g_k.g_l,     beta = (step/1.8)^2 (inertia_factor()).
-/// M is the diagonal matrix of lumped masses and `step` is body_cluster_step. Implicit element e has the assumed
-/// modulus c_e, the volume V_e, and the shape gradient g_k at node k. Sequential; allocates.
+/// Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
 
 /// Rebuilds the clusters of bodies whose implicit elements have changed, marked in `body_changed` (by body). The
@@ -30,10 +30,11 @@ void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, 
 void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs,
                       std::span<const std::uint8_t> body_changed, NodeClusters& clusters);
 
-/// Sizes of the clusters that build_clusters() would make for a body. `largest`: node count of the largest cluster.
-/// `entries`: number of entries of all inertia matrices together. `cubes`: sum of the cubes of the node counts, to
-/// which the cost of inverting the matrices is proportional. `modulus`: assumed moduli of the elements; row 0 belongs
-/// to the block blocks.begin.
+/// Sizes of the clusters that build_clusters() would make for a body:
+/// - `largest`: node count of the largest cluster;
+/// - `entries`: number of entries of all inertia matrices together;
+/// - `cubes`: sum of the cubes of the node counts, to which the cost of inverting the matrices is proportional.
+/// `modulus`: assumed moduli of the elements; row 0 belongs to the block blocks.begin.
 struct ClusterSizes {
     std::size_t largest = 0, entries = 0, cubes = 0;
 };

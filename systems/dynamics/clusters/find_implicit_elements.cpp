@@ -59,10 +59,9 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
     return least_moment_of(second);
 }
 
-/// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. At the angular velocity
-/// w the nodes have the velocity field w x r, and the element adds the kinetic energy beta c V |grad(w x r)|^2 / 2 =
-/// beta c V |w|^2, with the assumed modulus c, the volume V, and beta = inertia_factor(step). The moment is
-/// therefore 2 beta c V.
+/// Moment of inertia 2 beta c V that an implicit element adds in a rigid rotation about any axis [kg m^2], with the
+/// assumed modulus c, the volume V, and beta = inertia_factor(step). The velocity field
+/// w x r of the angular velocity w adds the kinetic energy beta c V |grad(w x r)|^2 / 2 = beta c V |w|^2.
 Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_factor(step) * modulus * volume;
 }
@@ -252,9 +251,9 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     // Every round changes the mass shares. Every fourth round also makes elements implicit; the other rounds let the
-    // mass shares adapt to this. Most rounds only estimate the stable steps. The rigorous bound is computed in the
-    // rounds 1, 25, 49 and so on. It is also computed in the round after an estimate by which all elements are stable,
-    // to confirm this estimate.
+    // mass shares adapt to this. Most rounds only estimate the stable steps. The rigorous bound is computed
+    // - in the rounds 1, 25, 49 and so on,
+    // - after an estimate by which all elements are stable, to confirm this estimate.
     constexpr int rounds_of_sharing = 4;
     constexpr int rounds_of_estimates = 24;
     // Largest factor by which a mass share may change in one round. Without this limit, an element that stays unstable

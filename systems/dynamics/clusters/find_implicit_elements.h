@@ -43,9 +43,9 @@ struct ImplicitShare {
 /// outlive the search, and only the output columns may change meanwhile. Sequential.
 ///
 /// find() changes the mass shares in rounds. The rigorous bound on the stable step of an element needs 9x9 matrices, so
-/// most rounds only estimate how the bound changes with the mass shares. The step is nearly proportional to 1/sqrt(T),
-/// where T is the trace of sum_k g_k g_k^T / m_k. g_k is the shape gradient at node k, and m_k the part of the mass of
-/// node k that the element gets. The trace takes one product per node.
+/// most rounds only estimate how the step changes with the mass shares. It is nearly proportional to 1/sqrt(T), with
+/// the trace T of sum_k g_k g_k^T / m_k, the shape gradient g_k at node k, and the element's part m_k of the mass of
+/// node k.
 class ImplicitSearch {
 public:
     /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
@@ -60,8 +60,8 @@ public:
     ImplicitShare find(const ImplicitGoal& goal);
 
     /// Estimate of the fraction of the volume that must become implicit so that the remaining elements can be stable at
-    /// a step of `stable` [s]. These elements then need no more mass in total than the nodes have. The estimate takes
-    /// much less time than find().
+    /// a step of `stable` [s]: these need no more mass in total than the nodes have. The estimate takes much less time
+    /// than find().
     Real estimate_volume(Real stable) const;
 
 private:
@@ -95,18 +95,17 @@ private:
     /// Estimates these stable steps. A stable step is nearly proportional to 1/sqrt(trace) (find_trace()), so the
     /// rigorous bound of the last measure() is scaled by sqrt(trace at that time / present trace).
     void estimate();
-    /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends
-    /// only on the shape. g_k is the shape gradient and m_k the element's part of the mass of node k. sum_ must contain
-    /// the stiffness sums for the present mass shares.
+    /// Computes the trace T (see the class) for every element with a mass share, up to a factor that depends only on
+    /// the shape. sum_ must contain the stiffness sums for the present mass shares.
     void find_trace(std::vector<ElementLane>& trace);
     void mark(std::size_t b, std::size_t l, std::uint8_t bits);
     /// Marks of an element: near_unstable if any of its nodes has this mark, and near_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes some elements implicit that are unstable at `step` or share a node with an unstable element. An element of
-    /// this kind becomes implicit if its needed_fraction() is at least min_needed_fraction_. It also becomes implicit
-    /// if all its nodes belong to implicit elements, because then it enlarges no cluster. If no element meets one of
-    /// these conditions, min_needed_fraction_ is lowered for the next call.
+    /// Makes some of the elements implicit that are unstable at `step` or share a node with an unstable element:
+    /// - those whose needed_fraction() is at least min_needed_fraction_;
+    /// - those whose nodes all belong to implicit elements, because they enlarge no cluster.
+    /// If there are no such elements, min_needed_fraction_ is lowered for the next call.
     void make_unstable_implicit(Real step);
     /// Writes the assumed moduli of the implicit elements. Returns the moment of inertia that they add, and whether
     /// they have too much volume or form too large a cluster.
@@ -136,10 +135,9 @@ private:
     bool step_is_rigorous_ = false;  // true if step_ holds the rigorous bound, not an estimate
 };
 
-/// Makes every explicit element implicit that is unstable at a step of goal.stable. Implicit elements stay implicit,
-/// and the mass shares and mass forms of all other elements are unchanged. This function is faster than
-/// ImplicitSearch::find(), but makes more elements implicit, because it does not adapt the mass shares. It tests only
-/// the limit on the volume (too_many).
+/// Makes every explicit element implicit that is unstable at a step of goal.stable. It is faster than
+/// ImplicitSearch::find(), but makes more elements implicit, because it keeps the mass shares and mass forms of all
+/// other elements. Implicit elements stay implicit. Only the limit on the volume is tested (too_many).
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out, const ElementBounds& bounds);

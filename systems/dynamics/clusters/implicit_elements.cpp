@@ -27,10 +27,9 @@ void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> m
 }
 
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time) {
-    // Viscous time of implicit elements divided by the step h. It damps a vibration of the circular frequency omega at
-    // the rate d = 0.1 h omega^2. The damping is explicit, so it lowers the upper limit of (omega h)^2 from 4 to
-    // 4 - 2 d h. Clusters allow omega h up to 1.8. There d h is 0.1 * 1.8^2 = 0.324, and the limit of omega h is
-    // sqrt(4 - 0.648) = 1.83. So the step stays stable.
+    // Viscous time of implicit elements divided by the step h. Clusters allow circular frequencies omega with omega h
+    // up to 1.8. There this explicit damping lowers the stability limit of omega h from 2 to sqrt(4 - 0.2 * 1.8^2) =
+    // 1.83, so the step stays stable (docs/methods/clusters.md 2.1).
     constexpr Real step_fraction = 0.1;
     for (std::size_t b = 0; b < modulus.size(); ++b)
         viscous_time[b] =

@@ -52,10 +52,12 @@ template <std::size_t Rows, class Visit>
 }
 
 /// Multiplies `Rows` rows of a symmetric matrix, from row `first_row` on, by the vectors `kick` (impulses on the
-/// nodes), and returns the products. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each entry
-/// is used twice: entry (r, c) times the vector `kick` of column c belongs to the product of row r. As the transposed
-/// entry (c, r), it is also multiplied by the vector `kick` of row r and added to `sum` at c. Thus only one triangle of
-/// the matrix is read, which matters because large matrices do not fit into the caches.
+/// nodes), and returns the products. Reads only columns 0 to width - 1; `width` is a multiple of the tile.
+///
+/// Each entry (r, c) is used twice, so that only one triangle of the matrix is read (large matrices do not fit into the
+/// caches):
+/// - Entry (r, c) times the vector `kick` of column c belongs to the product of row r.
+/// - The transposed entry (c, r) times the vector `kick` of row r is added to `sum` at c.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t first_row, std::size_t width,
@@ -110,7 +112,7 @@ template <std::size_t Rows>
 
 /// Multiplies `Rows` complete rows, from row `first_row` on, by the vectors `kick`, and stores the sums. The rows cross
 /// the diagonal in the complete tile that begins at row and column `first`. This tile contains both triangles, so its
-/// entries are not used a second time as transposed entries.
+/// entries are used only once.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -160,8 +162,8 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
 }
 
 /// Index of the tile of working memory at which cluster `c` begins. `begin`: index of the first node of the cluster in
-/// the list of all cluster nodes. Each of the c clusters before it is padded to complete tiles, with at most 7 nodes.
-/// So they fill at most (begin + 7 c)/8 tiles, rounded down. The result leaves room for at least as many tiles.
+/// the list of all cluster nodes. At most 7 nodes pad each of the c clusters before it to complete tiles. So they fill
+/// at most (begin + 7 c)/8 tiles, which is at most begin/8 + c (both rounded down).
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

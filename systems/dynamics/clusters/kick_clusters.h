@@ -31,16 +31,16 @@ struct ClusterKickInputs {
     }
 };
 
-/// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity) for the nodes of each cluster, with the inertia
-/// matrix A of the cluster and the node masses m. On entry velocity_next contains the velocities that the forces give
+/// Replaces the node masses m in the velocity change of a step by the inertia matrix A of each cluster: velocity_next =
+/// velocity + A^-1 m (velocity_next - velocity). On entry velocity_next contains the velocities that the forces give
 /// the nodes with the masses m alone. Returns false if there is no cluster (skipped). Parallel over clusters.
 ///
-/// In an unstrained body (in translation without strain) all nodes have one velocity. If velocity_next is also equal at
-/// all nodes of one of its clusters, it is left unchanged, because A adds inertia only against differences of velocity.
+/// A adds inertia only against differences of velocity. In an unstrained body (in translation without strain) all nodes
+/// have one velocity. If velocity_next is also equal at all nodes of one of its clusters, it is left unchanged.
 ///
-/// `kick`: impulse of the forces on each node, by item of clusters.nodes [N s]. `work`: work memory whose contents
-/// persist between steps. `known`: true if `kick` and `work` still contain the results of a call with equal clusters,
-/// velocities and forces.
+/// - `kick`: impulse of the forces on each node, by item of clusters.nodes [N s].
+/// - `work`: work memory whose contents persist between steps.
+/// - `known`: true if `kick` and `work` still contain the results of a call with equal clusters, velocities and forces.
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

@@ -34,10 +34,8 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
     for (; i < to.size(); ++i) to[i] += factor.x() * x[i] + factor.y() * y[i] + factor.z() * z[i];
 }
 
-/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1, by Woodbury's identity. Row k of G
-/// is the shape gradient of an element at node k. The identity subtracts U (1/weight + G^T U)^-1 U^T with U = A^-1 G.
-/// With the Cholesky factorisation C C^T = 1/weight + G^T U, the subtracted matrix is W W^T with W = U C^-T. This
-/// product is bitwise symmetric in any order of summation.
+/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1. Row k of G is the shape gradient
+/// of an element at node k. Woodbury's identity subtracts U (1/weight + G^T U)^-1 U^T from A^-1, with U = A^-1 G.
 void add_to_inverse(const BlockNodes& block_nodes, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
@@ -66,6 +64,8 @@ void add_to_inverse(const BlockNodes& block_nodes, std::size_t l, Real weight, s
     for_each_node([&](std::size_t index, const Vec3& g) {
         small += Vec3(moved[0][index], moved[1][index], moved[2][index]) * g.transpose();
     });
+    // With C C^T = 1/weight + G^T U, the subtracted matrix is W W^T, W = U C^-T. It is bitwise symmetric in any order
+    // of summation.
     const Mat3 C = small.llt().matrixL();
     for (std::size_t i = 0; i < count; ++i) {
         const Real x = moved[0][i] / C(0, 0), y = (moved[1][i] - C(1, 0) * x) / C(1, 1),
@@ -87,10 +87,10 @@ Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
     return {v.x[l], v.y[l], v.z[l]};
 }
 
-/// Adds the force -weight F' g_k / kick to the forces of an element on its nodes k in this step, and the impulse weight
-/// F' to its viscous impulse. F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the
-/// increase of the element's inertia. The force, acting for the time `kick`, keeps the momentum of the deformation
-/// constant while the inertia increases.
+/// Keeps the momentum of the deformation of an element constant while its inertia increases by `weight`
+/// (docs/methods/clusters.md 6). With the rate F' of the deformation gradient and the shape gradients g_k, adds
+/// - the forces -weight F' g_k / kick, which act for the time `kick`, to the forces of the element on its nodes k,
+/// - the impulse weight F' to its viscous impulse.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
                    Real weight, Real kick, const PatchForces& patches) {
     const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);

@@ -48,15 +48,16 @@ struct StiffenOutputs {
     }
 };
 
-/// Raises the assumed stiffness of implicit elements whose present stiffness exceeds 0.9 times the assumed stiffness.
-/// The new value is twice the present stiffness. Updates the inertia matrices of the clusters concerned. Returns the
-/// kinetic energy that the larger inertia adds at unchanged velocities, without that of ghosts [J]. Sequential, in
-/// element order.
+/// Raises the assumed stiffness of implicit elements whose present stiffness exceeds 0.9 times the assumed stiffness,
+/// to twice the present stiffness. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy
+/// that the larger inertia adds at unchanged velocities, without that of ghosts (bodies of other ranks) [J].
+/// Sequential, in element order.
 ///
-/// The momentum of the deformation of a stiffened element stays constant, so its rate of deformation decreases. The
-/// impulse that causes this decrease (docs/methods/clusters.md 6) is added to the element forces, which act for the
-/// time `kick` [s], and to the viscous impulses. Tests only the blocks that compute_element_forces has marked in
-/// `patches.stiffening` for the present node positions, and clears these marks.
+/// - The momentum of the deformation of a stiffened element stays constant, so its rate of deformation decreases. The
+///   impulse that causes this (docs/methods/clusters.md 6) is added to the element forces, which act for the time
+///   `kick` [s], and to the viscous impulses.
+/// - Tests only the blocks that compute_element_forces has marked in `patches.stiffening` for the present node
+///   positions, and clears these marks.
 Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);
 

@@ -129,9 +129,9 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 
 namespace {
 
-/// Chooses the order of the nodes of elements in the rows of their blocks. The kernel adds forces to nodes row by row
-/// and lane by lane. Each addition waits for the previous addition to the same node. So every row gets that remaining
-/// node of the element to which a force was added longest ago.
+/// Chooses the order of the nodes of elements in the rows of their blocks. The kernel adds forces row by row and lane
+/// by lane, and each addition waits for the previous addition to the same node. So every row gets that remaining node
+/// of the element to which a force was added longest ago.
 class RowOrder {
 public:
     explicit RowOrder(std::size_t node_count) : last_addition_(node_count, 0) {}
@@ -176,9 +176,8 @@ void fill_rows(const ElementList& list, std::span<const Index> lanes, Index firs
                 nodes.gradient[r][i][l] = list.gradient[next][static_cast<Eigen::Index>(i)];
         }
     }
-    // The gradient of the first node is minus the sum of all other gradients. The sum runs in row order, like the sum
-    // of forces in the kernel, which sets the force on the first node to minus the sum of the other forces. The
-    // difference 0 - sum, unlike -sum, is never -0.
+    // The gradient of the first node is minus the sum of all other gradients, in row order, like the force on the first
+    // node in the kernel. The difference 0 - sum, unlike -sum, is never -0.
     for (std::size_t l = 0; l < element_lanes; ++l)
         for (std::size_t i = 0; i < 3; ++i)
             nodes.gradient[static_cast<std::size_t>(rows.begin)][i][l] = 0 - others[l][static_cast<Eigen::Index>(i)];

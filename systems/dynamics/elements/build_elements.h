@@ -37,11 +37,11 @@ struct AppendedElements {
 
 /// Assigns the elements of a list to lanes of blocks, patch after patch. A patch is a compact group of up to
 /// elements_per_patch neighbouring elements, found by repeatedly halving the body along its longest side.
-/// `rest_position`: rest positions of the nodes of the body [m].
-///
-/// Within a patch, all elements of a block have the same part of the stress (ElementPart) and the same material. Among
-/// these, elements with equal numbers of nodes are adjacent, so that few rows of a block are unused. Otherwise elements
-/// keep the order of the list. Inversion barriers (guards) have patches of their own, after all others.
+/// `rest_position`: rest positions of the nodes of the body [m]. Order of the elements:
+/// - Inversion barriers (guards) have patches of their own, after all others.
+/// - All elements of a block have the same part of the stress (ElementPart) and the same material.
+/// - Among these, elements with equal numbers of nodes are adjacent in a patch, so that few rows of a block are unused.
+/// - Otherwise elements keep the order of the list.
 ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position);
 
 /// Appends the elements of a new body to the tables, in the lanes `places`. `places` may have been found for another

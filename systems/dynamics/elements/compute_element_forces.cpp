@@ -48,8 +48,8 @@ struct Run {
     }
 
     /// Prefetches a later row of nodes, which may belong to another patch. Processors do not recognise that these rows
-    /// are consecutive, because other loads lie between them. The distance is a fixed number of rows: to find the rows
-    /// of a certain later block, a loop would need more instructions than the prefetches themselves.
+    /// are consecutive, because other loads lie between them. The distance is a fixed number of rows: finding the rows
+    /// of a certain later block would take more instructions than the prefetches.
     [[gnu::always_inline]] static void prefetch_row_ahead_of(const BlockNodes& nodes, Index k) {
         prefetch_lines_ahead(nodes.gradient + k, rows_ahead, 1);
         prefetch_lines_ahead(nodes.node + k, rows_ahead, 1);
@@ -281,11 +281,10 @@ struct Run {
     }
 };
 
-/// Computes the forces of a run of blocks. With wide registers the next block is fetched before the forces of the
-/// present block are added. Fetching and adding are independent of each other, while the stress between them is a long
-/// chain of dependent operations. Narrow registers are too few to hold two blocks, so there the next block is fetched
-/// last. Returns the energy that the dashpots of the elements dissipate [J].
+/// Computes the forces of a run of blocks. Returns the energy that the dashpots of the elements dissipate [J].
 [[gnu::always_inline]] inline Real compute_run(const Run& run) {
+    // True: the next block is fetched before the forces of the present block are added. These two operations are
+    // independent, while the stress between them is a long chain. Narrow registers are too few to hold two blocks.
     constexpr bool ahead = kernel_parts == 1;
     Parts<KernelReal> relaxed{};
     with_law(run.material.model, [&](auto law) {
@@ -307,9 +306,9 @@ void copy_positions(std::span<const Index> node, std::span<const Vec3> position,
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    // load_position reads one number past the position. The last row of the list belongs to the node with the highest
-    // row of NodeTable. For this node the number may lie beyond the end of `position`, so its position is copied number
-    // by number.
+    // The last position is copied number by number, because load_position reads one number past the position. The last
+    // row of the list belongs to the node with the highest row of NodeTable, for which this number may lie beyond the
+    // end of `position`.
     const std::size_t last = node.size() - 1;
     for (std::size_t s = 0; s < last; ++s) store_half(load_position(&at(s)), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};

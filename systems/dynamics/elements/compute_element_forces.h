@@ -153,15 +153,16 @@ struct ElementMemory {
 };
 
 /// Computes the forces of the elements on their nodes, and sums the forces over each patch. Returns the energy that the
-/// dashpots of Maxwell elements dissipate [J]. Parallel over patches.
+/// dashpots of Maxwell elements dissipate [J]. `kick`: time for which forces act [s]. Parallel over patches.
 ///
-/// The first Piola-Kirchhoff stress P of an element depends on F = sum_k (x_k - x_0) (x) g_k, with the node positions
-/// x_k and the gradients g_k at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 +
-/// f_2 + ...). Sums run block by block and lane by lane, so that the bits do not depend on the number of workers.
+/// With the node positions x_k and the gradients g_k at rest, the deformation gradient of an element is
+/// F = sum_k (x_k - x_0) (x) g_k, with outer products (x). It determines the first Piola-Kirchhoff stress P. With the
+/// rest volume V, the forces on the nodes are f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...).
 ///
-/// The corotational frame of an element is the rotation nearest to F. Laws with a frame start the search for it from
-/// `rotation` and write it to next.rotation; other laws write no frame. For bodies that are left out (is_left_out()),
-/// `patches.force` stays unchanged. `kick`: time for which forces act [s].
+/// - Sums run block by block and lane by lane, so that the bits do not depend on the number of workers.
+/// - Laws with a corotational frame (the rotation nearest to F) start the search for it from `rotation` and write it to
+///   next.rotation; other laws write no frame.
+/// - For bodies that are left out (is_left_out()), `patches.force` stays unchanged.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches);

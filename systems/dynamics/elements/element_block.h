@@ -28,8 +28,8 @@ namespace skerry {
 }
 
 /// Positions of the nodes of a patch, or forces on these nodes; each node has a PaddedVec3. A slot
-/// (ElementNodeTable::slot) is the offset of the first number of a PaddedVec3, not the index of the PaddedVec3.
-/// Processors scale an index by at most eight bytes, and a PaddedVec3 is longer.
+/// (ElementNodeTable::slot) is not the index of a PaddedVec3, but the offset of its first number, because processors
+/// scale an index by at most eight bytes, and a PaddedVec3 is longer.
 template <class Number>
 struct PatchRows {
     Number* first;
@@ -261,9 +261,9 @@ template <class T>
     return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
 }
 
-/// Calls take(k, part, f_k) with the forces on all nodes: f_k = Q g_k with Q = -V P, and f_0 = -(f_1 + f_2 + ...). V is
-/// the rest volume, P the stress, g_k the gradient at rest. All parts of one node come before the next node, so that
-/// the order of sums does not depend on the register width.
+/// Calls take(k, part, f_k) with the forces on all nodes k. With the rest volume V, the stress P, the gradients g_k at
+/// rest and Q = -V P, the forces are f_k = Q g_k and f_0 = -(f_1 + f_2 + ...). All parts of one node come before the
+/// next node, so that the order of sums does not depend on the register width.
 template <class Take>
 [[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& Q, const BlockNodes& block,
                                                   Take&& take) {

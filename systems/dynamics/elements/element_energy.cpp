@@ -16,10 +16,9 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block for which is_requested(block) is true. The search for
-/// the corotational frame of a lane starts from the frame of the same lane in the previous block, because neighbours
-/// have similar rotations. The search therefore also runs for skipped blocks. Laws without a frame ignore the argument
-/// `frame`.
+/// Calls visit(block, material, volume, F, frame) for every block for which is_requested(block) is true. Laws without a
+/// corotational frame ignore the argument `frame`. The search for the frame of a lane starts from the lane's frame in
+/// the previous block, because neighbours have similar rotations, so it also runs for skipped blocks.
 template <class Ask, class Visit>
 void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& is_requested,
                        Visit&& visit) {

@@ -12,14 +12,13 @@
 
 namespace skerry {
 
-/// Tolerance for the entries of F. An element counts as strained or rotated if an entry of F differs from the unit
-/// matrix by more than this tolerance. The tolerance is about a hundred times the rounding error of F for elements of 1
-/// cm at 1 m from the origin.
+/// Tolerance for the entries of F: an element counts as strained or rotated if an entry differs from the unit matrix by
+/// more. The tolerance is about a hundred times the rounding error of F for elements of 1 cm at 1 m from the origin.
 inline constexpr Real unstrained_within = 1e-11;
 
-/// Number of steps until the strains of an unstrained body are checked again. In n steps rounding moves a node by at
-/// most n / 2 units in the last digit of its position. For n = 1024 and elements of 1 cm at 1 m from the origin this
-/// motion causes a strain of 512 * 2.2e-16 m / 1 cm = 1.1e-11, about unstrained_within.
+/// Number of steps until the strains of an unstrained body are checked again. In this number of steps, rounding causes
+/// a strain of about unstrained_within: in n steps it moves a node by at most n / 2 units in the last digit of its
+/// position. For elements of 1 cm at 1 m from the origin, this is 512 * 2.2e-16 m / 1 cm = 1.1e-11.
 inline constexpr std::uint16_t unstrained_steps = 1024;
 
 struct UnstrainedInputs {
@@ -54,17 +53,16 @@ struct UnstrainedOutputs {
     }
 };
 
-/// Finds the unstrained bodies among those that are not idle, updates `unstrained`, and returns their number. Parallel
-/// over bodies.
+/// Finds the unstrained bodies among those that are not idle, updates `unstrained`, and returns their number. All nodes
+/// of an unstrained body have bitwise the same velocity, and none of its elements is strained or rotated or has a
+/// strained spring. Parallel over bodies.
 ///
-/// All nodes of an unstrained body have bitwise the same velocity, and none of its elements is strained or rotated or
-/// has a strained spring. An unstrained body remains so while its node velocities are equal. Its strains are checked
-/// again only every unstrained_steps steps. Code that changes node positions except by a time step must set
-/// `unstrained` to 0.
-///
-/// Steps do not write the rotations and spring strains of the elements of an unstrained body, but they still swap the
-/// columns of present and next values. When a body becomes unstrained, this function therefore makes rotation_next and
-/// spring_strain_next equal to the present columns.
+/// - An unstrained body remains so while its node velocities are equal. Its strains are checked again only every
+///   unstrained_steps steps.
+/// - Code that changes node positions except by a time step must set `unstrained` to 0.
+/// - Steps do not write the rotations and spring strains of the elements of an unstrained body, but they still swap the
+///   columns of present and next values. When a body becomes unstrained, this function therefore makes rotation_next
+///   and spring_strain_next equal to the present columns.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);
 
 }  // namespace skerry

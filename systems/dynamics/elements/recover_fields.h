@@ -12,9 +12,8 @@
 
 namespace skerry {
 
-/// Lists of the tetrahedra that each element of a body covers, which are those over which it averages the deformation
-/// gradient. There is one list for each lane of the blocks of the body, empty for an unused lane and for a guard
-/// (inversion barrier). Tetrahedra are numbered within the body.
+/// Lists of the tetrahedra that each element of a body covers: it averages the deformation gradient over them. The list
+/// is empty for an unused lane and for a guard (inversion barrier). Tetrahedra are numbered within the body.
 struct ElementCover {
     std::span<const ElementPart> part;  // by block: part of the stress of its elements
     RaggedView<Index> tetrahedra;       // by lane: tetrahedra that its element covers

@@ -60,8 +60,7 @@ Flow flow_of(const MaterialConstants& material, const Real8& volume, const LaneM
 
 /// Work of the springs of the Maxwell elements on the plastic flow, per volume [J/m^3]: the mean of their stresses in
 /// the last step and after the flow, times the decrease of the elastic strain by the flow. `trial`, `F`: elastic
-/// deformation gradient before and after the flow. The factor 1/4 contains 1/2 for the mean and 1/2 for doubled
-/// strains.
+/// deformation gradient before and after the flow.
 Real8 work_of_springs(const ElementInputs& elements, std::size_t block, const MaterialConstants& material,
                       const LaneMat3<Real8>& trial, const LaneMat3<Real8>& F) {
     const SpringStrain& last = elements.spring_strain[block];
@@ -72,6 +71,7 @@ Real8 work_of_springs(const ElementInputs& elements, std::size_t block, const Ma
     const LaneSymmetric<Real8> before{load_reals(last[0]), load_reals(last[1]), load_reals(last[2]),
                                       load_reals(last[3]), load_reals(last[4]), load_reals(last[5])},
         after = twice_green_strain(F);
+    // 1/4 contains 1/2 for the mean and 1/2 for doubled strains
     return 0.25 * inner_product(stress_at(before) + stress_at(after), twice_green_strain(trial) - after);
 }
 
@@ -144,9 +144,8 @@ void forget_flow(const ElementInputs& elements, Range blocks, std::span<const Ve
         const Real8 strain = load(state.plastic_strain[block]), zero{}, one = zero + 1.0;
         if (all(strain <= 0.0)) continue;
         // Finds the matrix M that undoes the plastic deformation Fp. With R = `rotation`, plastic flow has changed the
-        // rotated rest gradients R g_0 of the mesh to g = Fp^-T R g_0. Computed with the gradients g, the rest
-        // positions have the deformation gradient A = R^T Fp^-1. So Fp = A^-1 R^T, and M = Fp restores the gradients:
-        // M^T g = R g_0.
+        // rotated rest gradients R g_0 of the mesh to g = Fp^-T R g_0, so M = Fp restores them: M^T g = R g_0. Computed
+        // with the gradients g, the rest positions have the deformation gradient A = R^T Fp^-1. So Fp = A^-1 R^T.
         const LaneMat3<Real8> A = deformation_gradient(elements.nodes_of(block), rest_position), cof = cofactor(A);
         const Real8 over_det = 1.0 / (strain > 0.0 ? dot(A.c0, cof.c0) : one);
         LaneMat3<Real8> M;

@@ -7,9 +7,9 @@
 
 namespace skerry {
 
-/// Plastic state of the elements. Plastic flow changes the rest shape of an element. With the inverse Fp^-1 of its
-/// plastic deformation, the gradients g of its nodes become Fp^-T g, so that the deformation gradient computed from
-/// them is its elastic part F Fp^-1. The mass forms change with the gradients, so that the element keeps its mass.
+/// Plastic state of the elements. Plastic flow changes the rest shape of an element: with its plastic deformation Fp,
+/// the gradients g of its nodes become Fp^-T g. The deformation gradient computed from them is then the elastic part F
+/// Fp^-1 (docs/methods/elasticity.md 8). The mass forms change with the gradients, so that the element keeps its mass.
 struct PlasticState {
     std::span<ElementGradient> gradient;    // ElementNodeTable
     std::span<ElementForm> mass_form;       // ElementBlockTable
@@ -24,13 +24,13 @@ struct PlasticState {
 inline constexpr std::size_t blocks_per_yield = 64;
 
 /// Moves the elastic strain of all elements in a range of blocks back to the yield surface, at the given positions
-/// (radial return, Simo 1992). Elements that do not yield, or are left out of the step, stay unchanged. An element with
-/// a stretch or volume ratio below the limits of its law (Ogden::least_stretch, least_volume) does not flow. `parts`:
-/// work memory, one entry per blocks_per_yield blocks. Parallel over blocks.
+/// (radial return, Simo 1992). `parts`: work memory, one entry per blocks_per_yield blocks. Parallel over blocks. These
+/// elements stay unchanged:
+/// - elements that do not yield, or are left out of the step;
+/// - elements with a stretch or volume ratio below the limits of their law (Ogden::least_stretch, least_volume).
 ///
-/// Returns the dissipated energy, the plastic work [J]. It contains only the work of the stress along the yield
-/// surface. The excess of the elastic energy before the return is not included, because the stress before the return
-/// never acted on the nodes.
+/// Returns the dissipated energy, the plastic work [J]: the work of the stress along the yield surface. The excess of
+/// the elastic energy before the return is not included, because the stress before the return never acted on the nodes.
 Real yield_elements(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     const PlasticState& state, std::span<Real> parts);
 

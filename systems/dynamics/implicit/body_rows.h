@@ -37,10 +37,10 @@ bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real theta_h,
                      std::span<const Vec3> force, const BodyRows& body, std::span<Vec3> impulse);
 
-/// True if strain counts as large after a step. If it was large in the step, it becomes small only below the limits of
-/// becomes_small(). These are lower than the limits of becomes_large(), so that strain does not change between small
-/// and large in every step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a free body in
-/// the frame of the mesh, zero for a held body [kg m^2/s].
+/// True if strain counts as large after a step. Strain that was large becomes small only below the limits of
+/// becomes_small(). These are lower than those of becomes_large(), so that strain does not change between small and
+/// large in every step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a free body in the
+/// frame of the mesh, zero for a held body [kg m^2/s].
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum,
                     const BodyRows& body, StiffBody& stiff);
 

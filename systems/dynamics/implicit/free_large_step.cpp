@@ -41,10 +41,12 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 
 namespace {
 
-/// Removes rigid motion from the velocities and displacements at the end of the step, and writes the principal moments
-/// and axes of inertia of the new shape, and whether its strain is large. `energy`: kinetic energy of the deformation
-/// at the start of the step plus the work done on the body [J]. Returns the damped energy [J]: `energy` minus the
-/// kinetic energy of the deformation at the end, and minus the growth of the spin energy and of the elastic energy.
+/// Removes rigid motion from the velocities and displacements at the end of the step. Writes the principal moments and
+/// axes of inertia of the new shape, and whether its strain is large.
+///
+/// Returns the damped energy [J]: `energy` minus the kinetic energy of the deformation at the end of the step, and
+/// minus the growth of the spin energy and of the elastic energy. `energy`: kinetic energy of the deformation at the
+/// start of the step plus the work done on the body [J].
 Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real energy,
                   StiffBody& stiff, const ImplicitStrains& out) {
     const BodyRows body(bodies, stiff, r);
@@ -74,9 +76,8 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     }
     for (std::size_t n = 0; n < body.count; ++n) energy -= stiff.mass(body.order_index(n)) / 2 * next[n].squaredNorm();
     // Subtracts the growth of the spin energy L.omega / 2, with the angular momentum L and the angular velocity omega.
-    // At the end of the step omega follows from the moments of inertia of the new shape and from the rotation that
-    // turn_of_step() computes. So the growth includes the energy error of this rotation (docs/methods/rigid_bodies.md
-    // 2).
+    // At the end of the step omega follows from the new shape and the rotation of turn_of_step(), so the growth
+    // includes the energy error of this rotation (docs/methods/rigid_bodies.md 2).
     const Mat3 turned_for_step =
         turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
     const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),

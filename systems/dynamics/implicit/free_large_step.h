@@ -17,10 +17,9 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out);
 
-/// Ends a step that was computed with linear elasticity, but at the end of which strain is large: converts the end
-/// state to large strain. Moments of inertia and elastic energy are then those of the deformed shape, and the node
-/// velocities contain no rigid motion of this shape. Returns the energy that the body loses by this conversion [J]. The
-/// damped energy of the step does not contain it.
+/// Ends a step that was computed with linear elasticity, but at the end of which strain is large. Moments of inertia
+/// and elastic energy become those of the deformed shape, and the node velocities lose the rigid motion of this shape.
+/// Returns the energy that the body loses by this conversion [J], which the damped energy of the step does not contain.
 Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, StiffBody& stiff,
                   const ImplicitStrains& out);
 

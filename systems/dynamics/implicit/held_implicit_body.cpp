@@ -101,8 +101,8 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         return Vec3(frame.turn.transpose() * outer);
     };
     // `force`: elastic forces in the step if free nodes do not move in the world. They are (1 - theta) times the forces
-    // at the start of the step plus theta times the forces at its end. If `carried` is true, the frame or a held node
-    // moves, and the forces at start and end differ.
+    // at the start of the step plus theta times those at its end. These differ only if the frame or a held node moves
+    // (`carried`).
     bool carried = !frame.is_still;
     for (std::size_t n = 0; n < body.count; ++n) {
         impulse[body.order_index(n)] = displacement[n];
@@ -146,10 +146,13 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 
 namespace {
 
-/// Computes the elastic forces on the nodes in a step of large strain, by index in the elimination order [N]. Forces on
-/// free nodes follow from the change of momentum of these nodes, forces on held nodes from the material laws. The sum
-/// of all forces should be zero, but is not exactly: Newton's method leaves a residual, and the motion by contacts is
-/// computed with the tangent matrix instead of the laws. The missing force is divided equally among the held nodes.
+/// Computes the elastic forces on the nodes in a step of large strain, by index in the elimination order [N].
+/// - Free nodes: forces follow from the change of momentum.
+/// - Held nodes: forces follow from the material laws, and each node gets an equal share of the force that is missing
+///   to the sum zero.
+///
+/// The missing force has two causes: Newton's method leaves a residual, and the motion by contacts is computed with the
+/// tangent matrix instead of the laws.
 void forces_of_large_step(const HeldNodes& nodes, const BodyRows& body, Real inertia, Real theta, Real theta_h,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
@@ -219,10 +222,11 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         const Vec3 &mesh_force = rate[k], world_force = frame.turn * mesh_force;
         const Vec3 arm = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * arm).cross(world_force);
-        // At small strain, subtracts the work of the attachment, which rotates the node positions against the elastic
-        // forces. The translation of the frame does no work, because the elastic forces add up to zero.
-        // At large strain, adds the complete work of the nodes against the elastic forces without this work of the
-        // attachment. The growth of the elastic energy is subtracted below.
+        // The attachment rotates the node positions against the elastic forces. (Its translation does no work, because
+        // these forces add up to zero.)
+        // - At small strain, the work of the attachment is subtracted.
+        // - At large strain, the complete work of the nodes against the elastic forces is added, without the work of
+        //   the attachment. The growth of the elastic energy is subtracted below.
         if (large)
             damped += h * next[n].dot(mesh_force);
         else if (!frame.is_still)
@@ -232,9 +236,9 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
             force_on_held = h / kick * (force_on_held - world_force);
     }
     out.hold_moment[r] = -h * moment;
-    // Adds the energy losses: (theta - 1/2) (dw.M dw + du.K du) and the material damping. dw and du are the changes of
-    // velocity and displacement in the step, M the masses and K the stiffness. At large strain the decrease of the
-    // elastic energy replaces the term du.K du.
+    // Adds the energy losses (theta - 1/2) (dw.M dw + du.K du) and the material damping, with the changes dw of
+    // velocity and du of displacement in the step, the masses M and the stiffness K. At large strain the decrease of
+    // the elastic energy replaces the term du.K du.
     if (large) {
         damped += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
     } else {

@@ -128,9 +128,9 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         inertia_energy += inertia * mass * during.squaredNorm();
         next[n] = after;
     }
-    // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
-    // stiffness K. The long step has the matrix A = inertia M + theta_h^2 K with the masses M. So v.K v follows from
-    // v.M v and from the known impulses A v.
+    // Elastic energy u.K u / 2 with the stiffness K at the displacements u = step.start + time v, where v is `during`.
+    // A = inertia M + theta_h^2 K, with the masses M, is the matrix of the long step, and A v the known impulse. So
+    //     v.K v = (v.A v - inertia v.M v) / theta_h^2
     step.elastic_next = 0;
     for (std::size_t n = 0; n < body.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
     step.elastic_next += time * at_start + time * time / 2 * (impulse_energy - inertia_energy) / (theta_h * theta_h);
@@ -156,10 +156,9 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.contact_velocity.swap(step.contact_velocity_next);
         step.contact_impulse.swap(step.contact_impulse_next);
         if (!times.ends) continue;
-        // Writes `left`: the velocity that the contacts would have caused in a complete long step, times the length of
-        // a long step [m]. The next long step first assumes that contacts cause this velocity again.
-        // step.contact_velocity contains only the contacts in the elapsed time step.done of the long step. The factor
-        // times.length / step.done extends it to the complete long step.
+        // Writes the displacements that the contacts would have caused in a complete long step [m]. The next long step
+        // starts with them as its guess. step.contact_velocity contains only the contacts in the elapsed time
+        // step.done, and the factor times.length / step.done extends it to a complete long step.
         for (std::size_t n = 0; n < body_displacement.size(); ++n)
             body_displacement[n] = times.length * (times.length / step.done) * step.contact_velocity[n];
     }

@@ -152,16 +152,14 @@ struct ImplicitKicks {
 };
 
 /// Computes out.velocity_next, the velocities with which the node displacements change in the step, in the frame of the
-/// mesh. At small strain they are
-///     A^-1 P (M w + theta h (Q^T f - K u))
-/// with the displacements u and velocities w before the step, the loads f, the masses M, the stiffness K, the rotation
-/// Q of the frame, and the matrix A of the step. P removes rigid motion (docs/methods/implicit_bodies.md 2). At large
-/// strain the velocities are the result of Newton's method. Adds them to the node velocities that kick_rigid_bodies has
-/// computed from the motion of the frames. Computes missing matrix factors for the step length.
+/// mesh (docs/methods/implicit_bodies.md 2). At large strain they are the result of Newton's method. Adds them to the
+/// node velocities that kick_rigid_bodies has computed from the motion of the frames. Computes missing matrix factors
+/// for the step length.
 ///
-/// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step; the
-/// velocities of its held nodes are already set. Parallel over bodies. Returns false if there is no implicit body
-/// (skipped).
+/// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step. The
+/// velocities of its held nodes are already set.
+///
+/// Parallel over bodies. Returns false if there is no implicit body (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                           const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out);
@@ -226,16 +224,19 @@ struct StrainFindings {
 };
 
 /// Computes velocities and displacements at the end of the step. Returns sums over all bodies except ghosts, which are
-/// counted by the ranks that own them. At held nodes, adds the elastic forces to `force` and rescales the sum to forces
-/// that act for the time loads.kick. Writes to `hold_moment` the angular impulses by which attachments balance the
-/// elastic forces of held bodies [N m s]. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
+/// counted by the ranks that own them. Parallel over bodies.
+/// - `force`: receives the elastic forces at held nodes; the sum is rescaled to forces that act for the time
+///   loads.kick.
+/// - `hold_moment`: receives the angular impulses by which attachments balance the elastic forces of held bodies
+///   [N m s].
+/// - `parts`: work memory by row of RigidBodyTable.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
-/// Advances the long step of every body by the short step that is being committed. When a long step ends, writes to
-/// ImplicitNodeTable::left the displacements that its contacts cause in a complete long step: the next long step
-/// assumes that contacts have the same effect again. Writes 0 for bodies that took an ordinary step.
+/// Advances the long step of every body by the short step that is being committed. When a long step ends,
+/// ImplicitNodeTable::left receives the displacements that its contacts cause in a complete long step, because the next
+/// long step first assumes the same effect. It receives 0 for bodies that took an ordinary step.
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 

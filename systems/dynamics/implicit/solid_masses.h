@@ -13,9 +13,9 @@ namespace skerry {
 /// Deformed shape of a body. Entries are in the elimination order of the nodes.
 struct BodyShape {
     std::vector<Vec3> position;  // node positions relative to the centre of mass [m]
-    // Mass-weighted lever arm of each node: integral of rho N x over the body, with the density rho, the shape function
-    // N of the node, and the position x relative to the centre of mass [kg m]. The angular momentum of the solid is the
-    // sum over the nodes of the cross product arm x v with the node velocity v.
+    // Lever arm of each node, weighted by mass [kg m]. The angular momentum of the solid is the sum of arm x v over the
+    // nodes with the velocities v. The arm is the integral of rho N x over the body: density rho, shape function N of
+    // the node, position x relative to the centre of mass.
     std::vector<Vec3> arm;
 
     /// Inertia tensor of the shape about the centre of mass [kg m^2].

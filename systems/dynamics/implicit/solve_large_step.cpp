@@ -9,10 +9,11 @@ namespace skerry {
 
 namespace {
 
-/// Function of the node velocities v whose minimum is the solution of the step: inertia v.M v / 2 - v.impulse +
-/// U(unmoved_displacement + theta_h v). M are the node masses; `impulse` and `unmoved_displacement` are members of
-/// LargeStep. U is the elastic energy. For a free body U also contains the energy of the spin, L.I^-1 L / 2, with the
-/// constant angular momentum L and the inertia I of the deformed shape.
+/// Function of the node velocities v that the solution of the step minimises (docs/methods/implicit_bodies.md 8). With
+/// the node masses M and the elastic energy U it is
+///     inertia v.M v / 2 - v.impulse + U(unmoved_displacement + theta_h v)
+/// For a free body U includes the energy of the spin at constant angular momentum. `impulse` and `unmoved_displacement`
+/// are members of LargeStep.
 class Objective {
 public:
     Objective(Real inertia, Real theta_h, const StiffBody& stiff, LargeStep& step)
@@ -93,9 +94,11 @@ private:
 };
 
 bool find_velocity(Real inertia, Real theta_h, StiffBody& stiff) {
-    // Limits of Newton's method. It ends when the Newton decrement is at most `close` times its first value, or when
-    // the squared decrement is at most `rounding` times the sum of all energies. A new matrix factor is computed if an
-    // iteration leaves more than the fraction `slow_decrease` of the decrement.
+    // Limits of Newton's method, which ends when the decrement is small:
+    // - `close`: at most this fraction of its first value
+    // - `rounding`: its square is at most this fraction of the sum of all energies
+    // - `slow_decrease`: an iteration that leaves more than this fraction of the decrement is followed by a new matrix
+    //   factor
     constexpr Real close = 1e-3, rounding = 1e-13, slow_decrease = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;
@@ -111,9 +114,9 @@ bool find_velocity(Real inertia, Real theta_h, StiffBody& stiff) {
     if (!std::isfinite(value) || !factor()) return false;
     Real decrement = objective.evaluate();
     const Real first = decrement;
-    // In a very short step the first decrement can be below the rounding error of the energies although forces act. The
-    // start velocities are accepted only if the decrement is also small compared with the effect of these forces. Else
-    // the reactions of held nodes, which follow from the change of the velocities, would be wrong.
+    // The start velocities are accepted if the decrement is only a rounding error. In a very short step it can be below
+    // the rounding error of the energies although forces act. So it is also compared with the effect of these forces;
+    // else the reactions of held nodes would be wrong.
     if (decrement <= rounding * std::min(size, objective.force_energy())) return true;
     for (int k = 0; k < most_steps; ++k) {
         if (!std::isfinite(decrement)) return false;

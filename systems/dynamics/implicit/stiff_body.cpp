@@ -120,9 +120,9 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     BodyShape rest{arm_, {}};
     solid_.find_arms(rest);
     inverse_solid_inertia_ = rest.inertia().inverse();
-    // A bar of length l and density rho that spins at the angular velocity omega has the energy density
-    // rho (omega l)^2 / 24. Its stress is greatest in the middle, rho (omega l)^2 / 8. So its strain there is three
-    // times the energy density over Young's modulus. The softest material of the body counts.
+    // Energy of the spin at which centrifugal forces stretch a bar by the strain small_strain. A bar of length l and
+    // density rho at the angular velocity omega has the energy density w = rho (omega l)^2 / 24, and in its middle the
+    // greatest stress, rho (omega l)^2 / 8 = 3 w. The softest material of the body counts.
     Real volume = 0, least = infinity;
     for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
     for (const Index m : elements.material) {
@@ -199,10 +199,10 @@ bool StiffBody::becomes_large_in_order(std::span<const Vec3> displacement, const
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    // Fractions of the bounds of becomes_large() below which strain counts as small again. `accuracy_fraction`:
-    // fraction of the bounds on energies and spin. `strain_fraction`: fraction of small_strain. If all strains are
-    // below that fraction, the energies are not tested, because at so small strains their difference is mostly a
-    // rounding error.
+    // Limits below which strain counts as small again, as fractions of the limits of becomes_large():
+    // - `accuracy_fraction`: for energies and spin
+    // - `strain_fraction`: for strains; below it the energies are not tested, because their difference is mostly a
+    //   rounding error
     constexpr Real accuracy_fraction = 0.25, strain_fraction = 0.1;
     if (energy_of_spin(angular_momentum) > accuracy_fraction * stretching_spin_) return false;
     const Displacements at(displacement, node_);
@@ -253,11 +253,9 @@ void StiffBody::set_shape(const Displacements& displacement) {
 }
 
 Mat3 StiffBody::rotate_to_own_frame(std::span<Vec3> displacement) const {
-    // Finds by Newton's method the rotation for which the sum of m cross(X, y) over the nodes is zero. m is the mass of
-    // a node, X and y are its rest and present positions relative to the centre of mass. A body rotates only little
-    // against its frame in one step, so a few iterations suffice: after an iteration that rotates by 1e-8 rad, the
-    // error is about the square of this angle.
-    constexpr int most = 20;
+    // Newton's method for the rotation at which the sum of m cross(X, y) over the nodes is zero. m is the mass of a
+    // node, X and y are its rest and present positions relative to the centre of mass.
+    constexpr int most = 20;  // a few suffice, as a body rotates only little against its frame in one step
     constexpr Real rounding = 1e-15;
     Mat3 turn = Mat3::Identity();
     for (int k = 0; k < most; ++k) {
@@ -277,7 +275,7 @@ Mat3 StiffBody::rotate_to_own_frame(std::span<Vec3> displacement) const {
             of_node = back * (arm_[p] + of_node) - arm_[p];
         }
         turn = turn * back.transpose();
-        if (!(angle.norm() > 1e-8)) break;
+        if (!(angle.norm() > 1e-8)) break;  // the error is about the square of this angle
     }
     return turn;
 }

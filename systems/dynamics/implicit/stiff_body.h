@@ -117,20 +117,18 @@ public:
     void elastic_forces(std::span<const Vec3> displacement, std::span<Vec3> out) const {
         stiffness_.multiply(displacement, out);
     }
-    /// True if linear elasticity or the moments of inertia at rest are too inaccurate in this state. `displacement`: by
-    /// node of the body [m]. `angular_momentum`: in the frame of the mesh; zero for a held body [kg m^2/s].
+    /// True if linear elasticity or the moments of inertia at rest are too inaccurate in this state
+    /// (docs/methods/implicit_bodies.md 8). Always false if all material laws are linear. `displacement`: by node of
+    /// the body [m]. `angular_momentum`: in the frame of the mesh; zero for a held body [kg m^2/s].
     ///
-    /// The result is true in two cases. First, the centrifugal forces of the spin would stretch a bar with the same
-    /// spin energy per volume by the strain small_strain. Second, |F - 1| exceeds small_strain in an element with the
-    /// deformation gradient F, and in addition the energies or the spin are inaccurate.
+    /// The result is true in two cases:
+    /// - Centrifugal forces would stretch a bar with the same spin energy per volume by the strain small_strain.
+    /// - |F - 1| exceeds small_strain in an element with the deformation gradient F, and the energies or the spin are
+    ///   inaccurate.
     ///
-    /// The energies are inaccurate if linear elasticity and the material law give too different energies of elements:
-    /// the sum over the elements of the absolute differences exceeds energy_share of the linear energy. The spin is
-    /// inaccurate if two conditions hold: its energy exceeds energy_share of the linear energy, and the spin by the
-    /// inertia of the present shape differs from the spin by the inertia at rest by more than the fraction
-    /// small_strain.
-    ///
-    /// Always false if all material laws are linear.
+    /// Inaccurate energies: linear elasticity and the material law give energies of elements whose absolute differences
+    /// sum to more than energy_share of the linear energy. Inaccurate spin: its energy exceeds energy_share of the
+    /// linear energy, and deformation changes the spin by more than the fraction small_strain.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
         return is_large({displacement, node_}, angular_momentum);
     }
@@ -138,9 +136,11 @@ public:
     /// have moved far enough since the last evaluation for strain to become large.
     bool becomes_large_in_order(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The limits are lower
-    /// than in becomes_large(), so that strain does not change between small and large in every step. The energy of the
-    /// spin must be below a quarter of the limit there. In addition all strains |F - 1| must be below a tenth of
-    /// small_strain, or the energies and the spin must be accurate within a quarter of the limits there.
+    /// than in becomes_large(), so that strain does not change between small and large in every step. Both conditions
+    /// must hold:
+    /// - The energy of the spin is below a quarter of the limit there.
+    /// - All strains |F - 1| are below a tenth of small_strain, or the energies and the spin are accurate within a
+    ///   quarter of the limits there.
     bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
     /// Elastic energy [J]: u.K u / 2 for the displacements u, or by the material laws of the elements if strain is
@@ -190,10 +190,11 @@ public:
     /// Velocities of all nodes per unit impulse on one node, by index in the elimination order, computed by respond()
     /// [1/kg]. The result is stored until the matrix factor changes or newer results need its memory (column_memory).
     std::span<const Mat3> column(std::size_t node);
-    /// Velocities of the given nodes per unit impulse on these nodes, computed by respond() [1/kg]. The result is a
-    /// symmetric matrix, stored column by column, with three rows and three columns for each node. It is zero if there
-    /// is no matrix factor. It is reused while the matrix factor and the list of nodes stay the same. `nodes` ascend;
-    /// `first` is the first node of the body in the same numbering.
+    /// Velocities of the given nodes per unit impulse on these nodes, computed by respond() [1/kg]: a symmetric matrix,
+    /// stored column by column, with three rows and three columns for each node. It is zero without a matrix factor,
+    /// and is reused while the factor and the list of nodes stay the same.
+    ///
+    /// `nodes`: ascending. `first`: first node of the body in the same numbering.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
     /// Memory limit for the results of column(). It is exceeded if one call of responses() needs more columns.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // [bytes]

@@ -48,10 +48,12 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
 }
 
 /// Vector from the point of joint `j` to the point at which its equations are formed, along the axes of the second
-/// frame [m]. If the two bodies cannot rotate relative to each other, their relative velocity is equal at all points,
-/// so any point will do. For a hinge any point on its axis will do. The point nearest to the centre of mass is used,
-/// because velocity and spin are coupled least there. If both bodies move, their centres of mass are replaced by the
-/// mean of both, weighted by the sums of their inverse principal moments of inertia.
+/// frame [m]. Of the possible points the one nearest to the centre of mass is used, because velocity and spin are
+/// coupled least there:
+/// - Ball joint: the point of the joint.
+/// - Hinge: any point on its axis.
+/// - Bodies that cannot rotate relative to each other: any point, because their relative velocity is equal at all
+///   points.
 Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPose& first, const JointPose& second) {
     if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
     Vec3 sum = Vec3::Zero();
@@ -59,6 +61,7 @@ Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPose& first, 
     for (const Index body : {joints.first[j], joints.second[j]}) {
         if (joints.moving_node(body) == no_index) continue;
         const auto r = static_cast<std::size_t>(joints.rigid(body));
+        // If both bodies move, the weighted mean of their centres of mass is used.
         const Real weight = joints.moments[r].cwiseInverse().sum();
         sum += weight * joints.center[r];
         weights += weight;

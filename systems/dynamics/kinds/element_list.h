@@ -70,19 +70,18 @@ inline constexpr Real sliver_volume = 0.05;
 std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
 
 /// Upper limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of
-/// all tetrahedra of the mesh. A tetrahedron below this limit has little effect on the mean deformation gradients of
-/// the elements around its edges and nodes. So these elements hardly resist its inversion (docs/methods/elasticity.md
-/// 7.7).
+/// all tetrahedra of the mesh. Smaller tetrahedra need a barrier: they have little effect on the mean deformation
+/// gradients of smoothed elements, which thus hardly resist their inversion (docs/methods/elasticity.md 7.7).
 inline constexpr Real guarded_volume = 0.5;
 
 /// Adds an inversion barrier (guard) for every small tetrahedron in the zones of smoothed elements, except slivers.
-/// Barriers follow all other elements of the list. A barrier covers no tetrahedron, since it does not contribute to
-/// reported stress or strain. Its volume is zero while it is inactive (clusters/arm_guards.h).
+/// Barriers follow all other elements of the list. Reported stress and strain leave them out, so they cover no
+/// tetrahedron. The volume of an inactive barrier is zero (clusters/arm_guards.h).
 void add_guards(const RestMesh& mesh, std::span<const MaterialZone> zones, ElementList& list);
 
-/// Replaces `smoothed` by the kind that suits the Poisson ratio; other kinds are returned unchanged. Above a Poisson
-/// ratio of 0.25 Lame's lambda exceeds the shear modulus, and elements smoothed over edges alone begin to lock
-/// (docs/methods/elasticity.md 7.3).
+/// Returns the element kind that suits the Poisson ratio in place of `smoothed`; other kinds are returned unchanged.
+/// Above a Poisson ratio of 0.25 Lame's lambda exceeds the shear modulus, and elements smoothed over edges alone begin
+/// to lock (docs/methods/elasticity.md 7.3).
 ElementKind resolved(ElementKind kind, Real poisson_ratio);
 
 /// Makes every tetrahedron an element of constant strain. These elements are the stiffest kind.
@@ -93,9 +92,9 @@ void add_tetrahedron_elements(const RestMesh& mesh, ElementList& list);
 /// finite element method, 2009).
 void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list);
 
-/// Makes every node an element. Its deformation gradient F is the mean over the tetrahedra around the node. Each of
-/// these tetrahedra adds a quarter of its volume to the element. Such elements are too soft for the whole stress, but
-/// right for its volumetric part (selective smoothing: Nguyen-Thoi, Liu, Lam, Zhang: A face-based smoothed finite
+/// Makes every node an element. Its deformation gradient F is the mean over the tetrahedra around the node, each of
+/// which adds a quarter of its volume to the element. Such elements serve for the volumetric part of the stress; for
+/// the whole stress they are too soft (selective smoothing: Nguyen-Thoi, Liu, Lam, Zhang: A face-based smoothed finite
 /// element method, 2009, 5).
 void add_node_elements(const RestMesh& mesh, ElementPart part, ElementList& list);
 

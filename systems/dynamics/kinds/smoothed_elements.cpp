@@ -1,7 +1,8 @@
-// Elements that average the deformation gradient F over several tetrahedra. Each tetrahedron e contributes a fraction w
-// of its volume V_e to the element. The element then has the volume W = sum_e w V_e, and its node k has the shape
-// gradient g_k = sum_e (w V_e / W) g_ek, where g_ek is the shape gradient of tetrahedron e at node k
-// (docs/methods/elasticity.md 7).
+// Elements that average the deformation gradient F over several tetrahedra (docs/methods/elasticity.md 7). Each
+// tetrahedron e contributes a fraction w of its volume V_e to the element, and has the shape gradient g_ek at node k.
+// The element has
+//     the volume                      W   = sum_e w V_e
+//     the shape gradient at node k    g_k = sum_e (w V_e / W) g_ek
 #include <algorithm>
 #include <array>
 
@@ -13,10 +14,12 @@ namespace skerry {
 
 namespace {
 
-/// Collects the groups of tetrahedra that the elements cover. An item is one edge (or node) of one tetrahedron. Item i
-/// belongs to tetrahedron i / items_of_tetrahedron, and `first_alike[i]` is the first item at the same edge (or node)
-/// of the mesh. Groups are ordered by their first items, so that neighbouring elements stay close in memory. The
-/// tetrahedra of a group ascend.
+/// Collects the groups of tetrahedra that the elements cover, one group for each edge (or node) of the mesh. An item is
+/// one edge (or node) of one tetrahedron: item i belongs to tetrahedron i / items_of_tetrahedron, and `first_alike[i]`
+/// is the first item at the same edge (or node).
+///
+/// Groups are ordered by their first items, so that neighbouring elements stay close in memory. Tetrahedra of a group
+/// ascend.
 Ragged<Index> groups_of(std::span<const Index> first_alike, Index items_of_tetrahedron) {
     std::vector<Index> group(first_alike.size());
     Ragged<Index> groups;
@@ -51,10 +54,9 @@ struct Gradients {
         }
     }
 
-    /// Removes the nodes at which the gradients of the tetrahedra of the element add up to zero, such as an inner node
-    /// in its own element. Rounding errors leave about 1e-16 of a gradient g. This remainder causes no noticeable
-    /// force. But the bound on the step contains g g^T / |g|^2 (stiffness_share.cpp), in which a remainder counts as
-    /// much as a full gradient.
+    /// Removes the nodes at which the element has no gradient, such as an inner node in its own element. Rounding
+    /// errors leave about 1e-16 of a gradient g there. In g g^T / |g|^2, a part of the bound on the step
+    /// (stiffness_share.cpp), this remainder would count as much as a full gradient.
     void drop_zero_gradients() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;

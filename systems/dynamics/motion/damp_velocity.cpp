@@ -97,10 +97,10 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
     total.momentum += total.mass * velocity[first_node(bodies, body)];
 }
 
-/// Angular velocity omega of a body's rigid motion, from the angular momentum L of the body. The sum over the nodes of
-/// m x cross (omega cross y) must be L, with the node masses m. The moment arms x are the present positions; y are the
-/// positions at the time of the velocities. This sum is (tr(S) I - S) omega, with the unit matrix I and the sum S of m
-/// y x^T. If all nodes are on one line, omega has no component along this line.
+/// Angular velocity omega of a body's rigid motion (docs/methods/time_stepping.md 3.1). With the node masses m, the
+/// present positions x and the positions y at the time of the velocities, S is the sum of m y x^T. omega solves
+/// (tr(S) I - S) omega = L with the angular momentum L and the unit matrix I. If all nodes are on one line, omega has
+/// no component along this line.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;

@@ -50,19 +50,18 @@ struct DampingInputs {
     }
 };
 
-/// Removes the fraction 1 - exp(-damping kick) of the deformation velocity v - v_rigid from velocity_next. `velocity`
-/// is v at the start of the step. The predicted velocity is not used for v: under load it is not zero even for a body
-/// at rest, and damping must not act on such a body. `kick`: time between `velocity` and velocity_next [s].
-/// `dissipated`: removed kinetic energy [J], without that of ghosts (copies of bodies of other ranks).
+/// Damps the deformation of bodies with damping > 0 (docs/methods/time_stepping.md 3.1): removes the fraction
+/// 1 - exp(-damping kick) of v - v_rigid from velocity_next. Left out are bodies in RigidBodyTable, idle bodies, and
+/// bodies in unstrained flight (translation without strain). Parallel over node blocks; sums in block order.
+/// - v: `velocity`, at the start of the step. The predicted velocity would not do: under load it is not zero even for a
+///   body at rest, on which damping must not act.
+/// - v_rigid: rigid motion with the momentum and angular momentum of the body; zero for a body with pinned nodes. It is
+///   taken at the node positions DampingInputs::lag ago, to which v belongs, so that steady rotation is not damped. The
+///   moment arms are the present positions, so that damping leaves the angular momentum there unchanged.
+/// - `kick`: time between `velocity` and velocity_next [s].
+/// - `dissipated`: removed kinetic energy [J], without that of ghosts (copies of bodies of other ranks).
 ///
-/// Damps every body with damping > 0 that is not idle, not in unstrained flight (translation without strain) and not in
-/// RigidBodyTable. A body with pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid
-/// motion with the momentum and angular momentum of the body. It is taken at the node positions to which the velocities
-/// belong, which are earlier than the present positions by DampingInputs::lag. So a body that rotates with constant
-/// centrifugal stretch has no deformation velocity. The moment arms of the angular momentum are the present positions,
-/// so that damping leaves it unchanged at these positions.
-///
-/// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
+/// Returns false if no body has damping (skipped).
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,
                    std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated);
 

@@ -85,13 +85,12 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         sum.impulse += impulse * held.direction;
         sum.flow += std::abs(impulse);
         // Work of the holding force: the change of kinetic energy, mass * gained * (held.speed - gained / 2), minus the
-        // work of all other forces on the node. The impulse of these other forces is mass * gained - impulse, and their
-        // work is this impulse times `mean_speed`: the end velocity, or with leapfrog (lag = 0) the mean velocity.
-        // measure_work counts the work of gravity and loads over h instead of kick, so their work in the time h - kick
-        // is subtracted, too.
+        // work of all other forces on the node. The other forces have the impulse mass * gained - impulse. Their work
+        // is this impulse times `mean_speed`: the end velocity, or with leapfrog (lag = 0) the mean velocity.
         const Real mean_speed = lag == 0 ? held.speed - gained / 2 : held.speed;
         sum.work += impulse * mean_speed;
         if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;
+        // measure_work counts the work of gravity and loads over h instead of kick, so the difference is subtracted.
         sum.work -= (h - kick) * inputs.mass[held.node] * held.direction.dot(inputs.gravity) * mean_speed;
         if (!inputs.load.empty()) sum.work -= (h - kick) * held.direction.dot(inputs.load[held.node]) * mean_speed;
     });

@@ -52,12 +52,13 @@ struct AxisHoldInputs {
     }
 };
 
-/// Gives nodes that are held along single directions the prescribed velocities along these directions. With the
-/// prescribed velocity a node follows its attachment: at the end of the step it is at the position that the pose of the
-/// attachment gives it, as in drive_nodes. Writes the impulses by entry of AttachmentTable::node, zero for nodes that
-/// are held completely [N s]. Returns the sum and the work of these impulses, without those on ghosts (copies of bodies
-/// of other ranks). The work is measured as in measure_work, which explains `h`, `kick` and `lag`. Nodes of sleeping
-/// bodies are left out. Sequential.
+/// Gives nodes that are held along single directions the prescribed velocities along these directions. At the end of
+/// the step such a node is at the position that the pose of its attachment gives it, as in drive_nodes. Nodes of
+/// sleeping bodies are left out. Sequential.
+///
+/// `held_impulse`: impulses by entry of AttachmentTable::node, zero for nodes that are held completely [N s]. Returns
+/// the sum and the work of these impulses, without those on ghosts (copies of bodies of other ranks). The work is
+/// measured as in measure_work, which explains `h`, `kick` and `lag`.
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse);
 
@@ -73,10 +74,11 @@ struct HeldRows {
     Column<Node> node;    // working memory: by row of NodeTable
 };
 
-/// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move: one row for each held
-/// direction of such a node. Each row demands the prescribed velocity along its direction. A contact is not considered
-/// if only motion along held directions can change its gap: no impulses could satisfy both the contact and the rows.
-/// Sequential.
+/// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move. Each row demands the
+/// prescribed velocity along one held direction of such a node. Sequential.
+///
+/// A contact whose gap changes only by motion along held directions is not considered: no impulses could satisfy both
+/// the contact and the rows.
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
                        HeldRows& rows);
 

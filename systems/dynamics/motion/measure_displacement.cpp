@@ -15,12 +15,10 @@ constexpr std::size_t displaced_bodies_per_job = 16;
 
 // Greatest allowed displacement (distance of a node from its displacement origin), as a fraction of the mean edge.
 // Beyond it, measure_displacement() moves the origins to the nodes, which resets the displacement to zero.
-//
-// Displacements shorten the life of a list of pairs. A list with the margin `skin` is valid until the travels of its
-// two bodies have grown by skin - 2 (a + b), where a and b are the displacements of the bodies when the list was made
-// (contact_reach.h). With this limit on a and b, at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges
-// are lost. With a greater limit lists expire sooner. With a smaller limit more vibrating bodies exceed it, and each
-// reset leaves the displacement in their travel.
+// - With a greater limit lists of pairs expire sooner. A list with the margin `skin` is valid until the travels
+//   (docs/methods/collision.md 2.1) of its two bodies have grown by skin - 2 (a + b), where a and b are their
+//   displacements when it was made. With this limit they take at most 4 x 0.01 of the 0.3125 mean edges of the skin.
+// - With a smaller limit more vibrating bodies exceed it, and each reset leaves the displacement in their travel.
 constexpr Real longest_displacement = 0.01;
 
 void advance_frame(MovingFrame& frame, Real seconds) {

@@ -63,18 +63,15 @@ struct DisplacementOutputs {
 /// `offset` [m^2]. advance_positions stores the result for each block.
 Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin, const Vec3& offset);
 
-/// Updates displacement and travel of each body after positions have moved for the time `seconds` [s]. Parallel over
-/// bodies.
+/// Updates displacement and travel of each body (docs/methods/collision.md 2.1) after positions have moved for the time
+/// `seconds` [s]. Parallel over bodies.
+/// - Displacement: greatest distance of a node from its origin. Origins move with the frame of the body.
+/// - Travel: grows by the change of displacement, so neither vibration nor flight adds to it in the long run. Since an
+///   earlier time t no node has moved further, relative to the frame, than travel - travel(t) + 2 displacement(t).
 ///
-/// The displacement of a body is the greatest distance of a node from its origin; origins move with the frame of the
-/// body. Travel grows by the change of displacement, so neither vibration nor flight adds to travel in the long run.
-///
-/// If the displacement exceeds a small fraction of the mean edge, or on request, the origins move to the nodes and the
-/// frame gets the mean velocity of the nodes. The displacement is then zero, travel is unchanged, and frame_speed
-/// becomes the greatest speed of the nodes relative to the frame [m/s].
-///
-/// Bound on the motion since an earlier time t: relative to the frame, no node has moved further than travel -
-/// travel(t) + 2 displacement(t).
+/// If the displacement exceeds a small fraction of the mean edge, or on request, it is reset to zero: the origins move
+/// to the nodes, and the frame gets the mean velocity of the nodes. Travel is unchanged, and frame_speed becomes the
+/// greatest speed of the nodes relative to the frame [m/s].
 void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
                           const DisplacementOutputs& out);
 

@@ -10,9 +10,10 @@
 
 namespace skerry {
 
-/// Pose of a motion script at time t. With keys: between two keys position is linear in time and angular velocity is
-/// constant; the pose is constant before the first and after the last key. Without keys: the initial pose moves at the
-/// constant velocities of the script from its start time on.
+/// Pose of a motion script at time t:
+/// - With keys: between two keys position is linear in time and angular velocity is constant. Before the first and
+///   after the last key the pose is constant.
+/// - Without keys: the initial pose moves at the constant velocities of the script from its start time on.
 struct RigidPose {
     Vec3 position;
     Mat3 rotation;

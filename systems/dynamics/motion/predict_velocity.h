@@ -45,13 +45,13 @@ struct KickInputs {
     }
 };
 
-/// Sets velocity_next = velocity + kick F inverse_mass. F is the force on a node: the forces of its element patches,
-/// summed in a fixed order, plus mass times gravity plus load. `kick`: time for which forces act in this step [s].
-///
-/// Held nodes (inverse mass 0) keep their velocity. F is written to `force` for held nodes only; the holding force is
-/// the opposite of F. One pass sums the forces and updates the velocities, because storing F of all nodes and reading
-/// it again would take as long as the update. If all nodes of an unstrained body without loads and held nodes have one
-/// velocity, their new velocities are bitwise equal too (find_unstrained.h). Parallel over node blocks.
+/// Sets velocity_next = velocity + kick F inverse_mass. The force F on a node is the sum of the forces of its element
+/// patches, in a fixed order, plus mass times gravity plus load. Parallel over node blocks.
+/// - `kick`: time for which forces act in this step [s].
+/// - Held nodes (inverse mass 0) keep their velocity. `force` receives F for them only; the holding force is the
+///   opposite of F. To store F of all nodes and read it again would take as long as the update.
+/// - If all nodes of an unstrained body without loads and held nodes have one velocity, their new velocities are
+///   bitwise equal too (find_unstrained.h).
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

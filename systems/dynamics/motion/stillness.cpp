@@ -14,9 +14,8 @@ namespace {
 namespace limits = own_sleep_limits;
 
 /// Number of measurements of the drift (displacement of the nodes) that are due before `fraction` of one half of the
-/// sleep time has elapsed. Measurement i is due at the fraction (i + frac(i golden)) / measurements, where frac is the
-/// fractional part. The intervals are unequal, because with equal intervals an oscillation whose period is the interval
-/// would seem still.
+/// sleep time. With the fractional part frac, measurement i is due at the fraction (i + frac(i golden)) / measurements.
+/// Equal intervals would make an oscillation of this period seem still.
 int measurements_due(Real fraction) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(fraction * limits::measurements);
@@ -78,29 +77,30 @@ public:
     }
 
 private:
-    /// True if the mean forces on the nodes, over the last two halves of the sleep time, are in balance without the
-    /// damping forces. Damping must not be needed for the balance, because it does not act at rest. The force without
-    /// damping on a mass m is m (a + c v) with the acceleration a, the velocity v and the damping rate c. The mean of
-    /// a, with triangular weights over both halves, is (d2 - d1) / half_time^2, where d1 and d2 are the displacements
-    /// of the node in the two halves. |d2 - d1| is at most the sum of the drifts of both halves.
+    /// True if the mean forces on the nodes, over the last two halves of the sleep time, are in balance without
+    /// damping, which does not act at rest (docs/methods/skipping.md 3.1, condition 4). The force that remains without
+    /// damping on a mass m is m (a + c v) with the acceleration a, the velocity v and the damping rate c.
     bool is_balanced(Real half_time) const {
         // In a body with held nodes damping acts on the complete velocity, else only on the velocity relative to the
         // rigid motion.
         const bool held = bodies_.pinned_count[body_] > 0;
         const Real drift = std::abs(state_.drift[body_]), damped = held ? drift : state_.shape_drift[body_];
+        // Bound on the mean acceleration, with triangular weights over both halves: |d2 - d1| / half_time^2, where d1
+        // and d2 are the displacements of a node in the two halves.
         const Real acceleration = (drift + state_.drift_before[body_]) / (half_time * half_time);
         return acceleration + damping() * damped / half_time <= limits::imbalance * settings_.gravity;
     }
 
-    /// True if the shape varies little about a constant shape and does not creep towards a distant shape. If the change
-    /// of shape shrinks by the factor q from one half of the sleep time to the next, the remaining creep is shape_drift
-    /// q/(1 - q).
+    /// True if the shape varies little about a constant shape and does not creep towards a distant shape
+    /// (docs/methods/skipping.md 3.1, conditions 5 and 7). The remaining creep is estimated as that of a geometric
+    /// series.
     bool keeps_shape(bool shape_grows) const {
         const Real now = state_.shape_drift[body_], before = state_.creep_before[body_];
         if (now <= limits::noise * bodies_.mean_edge[body_]) return true;
         const Real shape = shape_distance(positions(), part_of_body(bodies_.rest_position));
         if (now > std::max(limits::shape_change * shape, limits::shape_noise * bodies_.mean_edge[body_])) return false;
         const bool creeps = shape_grows && before > 0;
+        // If the change of shape shrinks by q = now / before in each half, now q / (1 - q) remains.
         return !creeps || (now < before && now * now <= limits::creep * shape * (before - now));
     }
 

@@ -66,14 +66,19 @@ struct PressInputs {
     }
 };
 
-/// Marks both bodies of every contact with a stored impulse from earlier steps. For sleeping bodies the stored impulse
-/// is that of the step in which they fell asleep. The present solve would not show that such a contact is pressed,
-/// because it leaves out the weight of sleeping bodies. If no impulses are stored, every contact counts.
+/// Marks both bodies of every contact with a stored impulse, for sleeping bodies that of the step in which they fell
+/// asleep. The present solve would not show that such a contact is pressed, because it leaves out the weight of
+/// sleeping bodies. If no impulses are stored, every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes a body in each of these cases: it is marked in `pressed` or `driven`; one of its contacts in this step has an
-/// impulse or a negative gap; BodyLinks connects it to an awake body; an attachment moves it. Contacts between sleeping
-/// bodies are not searched, so each contact has an awake body or a moving collider. Returns false if no body was woken.
+/// Wakes a body in each of these cases:
+/// - It is marked in `pressed` or `driven`.
+/// - One of its contacts in this step has an impulse or a negative gap.
+/// - BodyLinks connects it to an awake body.
+/// - An attachment moves it.
+///
+/// Contacts between sleeping bodies are not searched, so each contact has an awake body or a moving collider. Returns
+/// false if no body was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
                  std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep,
@@ -192,9 +197,13 @@ struct SleepMemory {
     Column<std::uint8_t> stays_awake;
 };
 
-/// Counts the time for which each body has been still. If a body has been still long enough, finds the sets of bodies
-/// that touch each other, directly or through other bodies, and the sets that must stay awake. A body that has not been
-/// still long enough, touches a moving collider, is held by a moving attachment or is marked in `driven` stays awake.
+/// Counts the time for which each body has been still. Once a body has been still long enough, finds the sets of bodies
+/// that touch each other, directly or through other bodies. A set must stay awake if one of its bodies
+/// - has not been still long enough,
+/// - touches a moving collider,
+/// - is held by a moving attachment, or
+/// - is marked in `driven`.
+///
 /// Parallel over bodies; sequential over contacts once a body has been still long enough.
 void find_still_sets(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                      const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);

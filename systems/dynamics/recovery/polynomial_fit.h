@@ -30,9 +30,9 @@ public:
     /// N of the fit, or zero without samples. `rank`: number of terms that were kept; a term that nearly depends on
     /// earlier ones is dropped.
     Eigen::Matrix<Real, 1, terms> row_of_origin(int& rank) const {
-        // Cholesky decomposition of N, row by row. The values of a term at all samples form a vector. Elimination of
-        // the earlier terms multiplies the diagonal entry of the term by sin^2 of the angle between this vector and the
-        // span of the earlier ones. If sin^2 is below `dependent`, the term is dropped.
+        // Cholesky decomposition of N, row by row. A term is dropped if elimination of the earlier terms reduces its
+        // diagonal entry below the fraction `dependent`. The values of a term at all samples form a vector, and the
+        // fraction is sin^2 of its angle to the span of the earlier terms.
         constexpr Real dependent = 1e-3;
         Eigen::Matrix<Real, terms, terms> lower = Eigen::Matrix<Real, terms, terms>::Zero();
         Eigen::Matrix<Real, terms, 1> value = Eigen::Matrix<Real, terms, 1>::Unit(0);

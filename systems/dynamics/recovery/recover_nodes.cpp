@@ -84,16 +84,16 @@ private:
         return value;
     }
 
-    /// Arguments of the search for the deformation gradient at a surface node. The stress of this deformation gradient
-    /// must balance the traction: the external force on the elements around the node, divided by the surface area. The
-    /// part of the force that is due to weight and inertia is subtracted first. This part, divided by the volume of the
-    /// node, is taken to be the same as at the inner nodes nearby.
+    /// Arguments of the search for the deformation gradient at a surface node (docs/methods/elasticity.md 7.9). Its
+    /// stress must balance the traction: the external force on the elements around the node, without weight and
+    /// inertia, divided by the surface area.
     SurfaceSearch search_at(std::size_t row) const {
         const auto f = static_cast<std::size_t>(plan_.face_of_smooth_node[row]);
         const RecoveryPlan::Face& face = plan_.faces[f];
         const std::span<const Index> rows = plan_.force_rows[f];
         Vec3 force = force_[static_cast<std::size_t>(rows.front())], inner_force = Vec3::Zero();
         for (const Index inner : rows.subspan(1)) inner_force += force_[static_cast<std::size_t>(inner)];
+        // weight and inertia, taken to be the same per volume as at the inner nodes nearby
         force -= face.inner_share * inner_force;
         const SurfaceAround& around = face.around;
         Vec3 start = Vec3::Zero();

@@ -43,13 +43,13 @@ public:
     RecoveryPlan take() { return std::move(plan_); }
 
 private:
-    /// Rotates the rest positions X into the frame of the gradients g. The gradients were rotated by R with the body
-    /// when it was added, so every element has F = sum_k X_k g_k^T = R^T in the rest shape of the mesh. One element
-    /// thus gives R. Elements that yield are skipped, because plastic flow has changed their gradients. If all elements
-    /// yield, no rotation is needed, because fits do not depend on the frame.
+    /// Rotates the rest positions X into the frame of the gradients g, which were rotated by R with the body when it
+    /// was added. One element gives R, because every element has F = sum_k X_k g_k^T = R^T in the rest shape of the
+    /// mesh. If all elements yield, no rotation is needed: fits do not depend on the frame.
     void rotate_rest() {
         for (Index b = body_.blocks.begin; b < body_.blocks.end; ++b) {
             const auto block = static_cast<std::size_t>(b);
+            // Plastic flow has changed the gradients of elements that yield.
             if (!(body_.elements.volume[block][0] > 0) || body_.elements.material_of(block).yields()) continue;
             const BlockNodes nodes = body_.elements.nodes_of(block);
             const auto rest = [&](Index k) -> const Vec3& {

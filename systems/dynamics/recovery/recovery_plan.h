@@ -38,23 +38,23 @@ struct RecoveryPlan {
         Index from;
         Real factor;
     };
-    // One row for each needed node that is inside the body or on a smooth part of its surface: the row of the node in
-    // `faces`, or no_index. It is no_index for inner nodes, and for nodes of materials that yield. The value at a node
-    // without a row of `faces` is a weighted sum of values of the elements around it. The value at any other node of
-    // this list is found by Newton's method.
+    // Row in `faces` of each needed node that is inside the body or on a smooth part of its surface; no_index for inner
+    // nodes, and for nodes of materials that yield. With no_index the value at the node is a weighted sum of values of
+    // the elements around it, else the result of Newton's method.
     std::vector<Index> face_of_smooth_node;
-    // For each row of `face_of_smooth_node`: factors of the elements around its node, by place, ascending. For a node
-    // without a row of `faces` they are the factors of a fit. For a node with such a row they are the factors of a
-    // mean, which starts Newton's method and replaces its result if the method fails. `strained`: elements with strain.
-    // `volumetric`: elements that have only the volumetric part of the stress.
+    // Factors of the elements around the node of each row of `face_of_smooth_node`, by place, ascending. `strained`:
+    // elements with strain. `volumetric`: elements that have only the volumetric part of the stress.
+    //
+    // Factors of a fit for a node without a row of `faces`, else factors of a mean. The mean starts Newton's method,
+    // and replaces its result if the method fails.
     Ragged<Term> strained, volumetric;
 
     struct Face {
         SurfaceAround around;
         Index element;  // place of one element around the node; gives the material
-        // Weight and inertia of the face's node are estimated from the inner nodes in the tetrahedra around it: as the
-        // sum of the forces at these inner nodes times this factor. The factor is the volume of the face's node
-        // (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes; 0 if there are none.
+        // Weight and inertia of the face's node, estimated as this multiple of the sum of the forces at the inner nodes
+        // in the tetrahedra around it. It is the volume of the face's node (NodePatches::node_volume) divided by the
+        // sum of the volumes of these inner nodes; 0 if there are none.
         Real inner_share;
     };
     std::vector<Face> faces;

@@ -27,11 +27,12 @@ struct SurfaceAround {
     Vec3 area = Vec3::Zero();
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
-    // Terms of a least-squares fit for a smooth surface with the normal N: `plane_inverse` and `normal_row`. The fit
-    // determines the deformation gradient F from b = F N. Many F have the same b; F = area_gradient plane_inverse
-    // + b normal_row^T is the one that differs least from the deformation gradients within the triangles.
-    // `area_gradient` is the result of surface_stretch(). `plane_inverse` is the inverse, within the tangent plane, of
-    // the sum over the triangles of area times projector onto the triangle [1/m^2].
+    // Matrices of a least-squares fit for a smooth surface with the normal N. For a given b = F N and area_gradient,
+    // the result of surface_stretch(), they give the deformation gradient
+    //     F = area_gradient plane_inverse + b normal_row^T
+    // Of all F with this b it differs least from the deformation gradients within the triangles. `plane_inverse` is the
+    // inverse, within the tangent plane, of the sum over the triangles of area times projector onto the triangle
+    // [1/m^2].
     Mat3 plane_inverse = Mat3::Zero();
     Vec3 normal_row = Vec3::Zero();
 };

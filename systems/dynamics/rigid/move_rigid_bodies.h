@@ -126,11 +126,12 @@ struct RigidKicks {
 /// Computes the impulse and angular impulse of gravity and loads on each body, and the node velocities after these
 /// impulses, from which the contact solver starts. Parallel over bodies. Returns false if there is no rigid body
 /// (skipped).
-///
-/// Gravity and loads act for the force interval `kick` (docs/methods/time_stepping.md 1.5), but on the frames of
-/// implicit bodies for the complete step `h`. Sleeping bodies get no impulse. A held rigid body gets the impulse that
-/// moves it with its attachment; drive_nodes has already set the velocities of its nodes. The frame of a held implicit
-/// body has no momentum, because its motion is prescribed.
+/// - Gravity and loads act for the force interval `kick` (docs/methods/time_stepping.md 1.5), but on the frames of
+///   implicit bodies for the complete step `h`.
+/// - Sleeping bodies get no impulse.
+/// - A held rigid body gets the impulse that moves it with its attachment; drive_nodes has already set the velocities
+///   of its nodes.
+/// - The frame of a held implicit body has no momentum, because its motion is prescribed.
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 

@@ -1,10 +1,12 @@
-// Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K.
+// Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K
+// (docs/methods/stable_step.md 3).
 //
-// The nonzero eigenvalues are those of V A with the volume V. A is the 9x9 matrix that maps a 3x3 matrix Y to H(Y L^T)
-// L. H = dP/dF is the tangent of the material law, and L L^T = Q is the tensor of inverse masses. H, or an upper bound
-// on it, is a sum of a few terms, and each of them gives a closed-form term of A. The bound is
-// lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows whether V lambda_max(A) is below a limit c: then c I - V A is
-// positive definite.
+// The nonzero eigenvalues are those of V A, with the volume V and a 9x9 matrix A. A maps a 3x3 matrix Y to H(Y L^T) L,
+// where H = dP/dF is the tangent of the material law, and L L^T = Q the tensor of inverse masses. Each term of H, or of
+// an upper bound on it, adds a closed-form term to A.
+//
+// The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows whether V lambda_max(A) is below a limit c: then
+// c I - V A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -96,9 +98,10 @@ public:
                     for (int k = 0; k < (p == q ? i + 1 : 3); ++k) A_.a[3 * p + i][3 * q + k] += s * x[q][i] * x[p][k];
     }
 
-    /// Adds s d(cof F)/dF to H. Let e_m be column m of F cof(L), and [e]x the matrix of the cross product with e. Block
-    /// (p, q) of the 9x9 matrix A changes by -s [e_m]x if (p, q, m) is a cyclic permutation of (0, 1, 2), and by s
-    /// [e_m]x if (q, p, m) is one.
+    /// Adds s d(cof F)/dF to H. e_m is column m of F cof(L), and [e]x the matrix of the cross product with e. Block
+    /// (p, q) of the 9x9 matrix A grows by
+    ///     -s [e_m]x    if (p, q, m) is a cyclic permutation of (0, 1, 2)
+    ///      s [e_m]x    if (q, p, m) is one
     void add_cofactor_slope(const T& s, const LaneMat3<T>& F) {
         const LaneMat3<T> E = multiply(F, cofactor(L_));
         const LaneVec3<T> e[3] = {E.c0, E.c1, E.c2};
@@ -121,10 +124,8 @@ private:
     Matrix9<T>& A_;
 };
 
-/// Adds an upper bound on H = dP/dF of the viscous stress P = F S, with its second Piola-Kirchhoff stress S. This H
-/// maps X to F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. In the bound, F F^T and S are replaced by upper
-/// bounds on their eigenvalues. The bound for F F^T is the mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is
-/// the deviator of F^T F.
+/// Adds an upper bound on H = dP/dF of the viscous stress P = F S to H (docs/methods/stable_step.md 4.4). S is the
+/// second Piola-Kirchhoff stress of the springs. The bound replaces F F^T and S by upper bounds on their eigenvalues.
 template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
@@ -133,6 +134,7 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     const T third = strain.trace() / 3.0;
     const LaneSymmetric<T> deviator{strain.xx - third, strain.yy - third, strain.zz - third,
                                     strain.xy,         strain.yz,         strain.zx};
+    // Bound for F F^T: mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is the deviator of F^T F.
     const T largest = 1.0 + (third + 2.0 * square_root(inner_product(deviator, deviator) / 6.0));
     const T strain_share = lanes_in(viscous.strain_share, part), volume_share = lanes_in(viscous.volume_share, part);
     const T mu = moduli.mu * strain_share;
@@ -141,10 +143,10 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Changes A to D A D, to take account of the additional term b (R:X)^2 of the mass form of an element. R is a rotation
-/// and X = Y L^T the displacement gradient. Without this term the mass form of Y is |Y|^2. With s = R L as a vector of
-/// nine entries, R:X = s.Y. So the complete mass form is Y.(1 + b s s^T) Y, and
-///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
+/// Changes A to D A D, because the mass form of the element has the additional term b (R:X)^2. R is a rotation,
+/// X = Y L^T the displacement gradient, and s = R L as a vector of nine entries. So R:X = s.Y, and with a scalar c
+///     mass form = |Y|^2 + b (s.Y)^2 = Y.(1 + b s s^T) Y
+///     D         = (1 + b s s^T)^-1/2 = 1 - c s s^T
 template <class T>
 void add_frame_mass(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);
@@ -245,9 +247,9 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane of a block in which this eigenvalue exceeds
-/// `threshold` in some lanes. It probably does so by little, so limits just above `threshold` are tried first. The
-/// greatest of the bounds is at most 0.3 % too large.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane of a block, if this eigenvalue exceeds `threshold`
+/// in some lanes. Limits just above `threshold` are tried first, because the excess is probably small. The greatest of
+/// the bounds is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real threshold) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)

@@ -38,10 +38,11 @@ enum class Sharpness {
 /// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]; 0 in lanes without
 /// volume.
 ///
-/// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. The mass M depends on `Q`.
-/// If `Q` is the sum of g_a g_a^T / m_a over the corners a, with their gradients g_a and mass shares m_a, M is the
-/// diagonal matrix of the m_a. For any other `Q` M is the mass form of `Q` (mass_forms.h). With `frame` M has the
-/// additional term of FramePart.
+/// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. The mass M depends on `Q`:
+/// - `Q` is the sum of g_a g_a^T / m_a over the corners a, with their gradients g_a and mass shares m_a: M is the
+///   diagonal matrix of the m_a.
+/// - Any other `Q`: M is the mass form of `Q` (mass_forms.h).
+/// - With `frame`, M has the additional term of FramePart.
 ///
 /// If the material law has a corotational frame, `q` is the initial guess of the frame and receives the frame found. If
 /// all eight lanes are below `threshold` [1/s^2], all lanes get `threshold` instead, in a tenth of the time.

@@ -24,9 +24,9 @@ Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const R
     const Vec3 squares = symmetric_eigenvalues(moment / total);
     // A box of length L has the radius of gyration L / sqrt(12) along its length.
     const Real length = std::sqrt(12 * squares[2]), thickness = std::sqrt(12 * std::max(squares[0], Real{0}));
-    // Lowest angular frequency of a free beam of length L: 22.4 / L^2 sqrt(E I / (rho A)), with Young's modulus E,
-    // density rho and sqrt(I / A) = thickness / sqrt(12). Ball or cube of size L: about 3 c / L. c = sqrt(E / rho) is
-    // the speed of sound.
+    // Lowest angular frequency, with Young's modulus E, density rho and speed of sound c = sqrt(E / rho):
+    // - free beam of length L: 22.4 / L^2 sqrt(E I / (rho A)), where sqrt(I / A) = thickness / sqrt(12)
+    // - ball or cube of size L: about 3 c / L
     constexpr Real of_beam = 22.4 / 3.4641016151377544, of_ball = 3;
     return std::min(of_beam * thickness / length, of_ball) * speed / length;
 }

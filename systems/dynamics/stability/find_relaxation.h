@@ -20,12 +20,13 @@ struct RelaxationOutputs {
     std::span<Real> relaxing_share;
 };
 
-/// Finds the relaxation rates of the Maxwell elements that model the losses of a body. The rates are spread evenly, on
-/// a logarithmic scale, over a band of frequencies from `highest` down to `lowest` / rates_below (relaxation.h).
-/// `highest` is the highest frequency of the body, `lowest` an estimate of its lowest frequency [1/s]. If the upper end
-/// of the band is less than 100 or more than 10,000 times its lower end, the lower end is changed. All elements get the
-/// same rates, so that losses depend neither on the position of an element nor on the number of elements.
-/// `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
+/// Finds the relaxation rates of the Maxwell elements that model the losses of a body, spread evenly over a band of
+/// frequencies on a logarithmic scale (docs/methods/elasticity.md 6.1). All elements get the same rates, so that losses
+/// depend neither on the position of an element nor on the number of elements. Sequential.
+/// - `highest`: highest frequency of the body, the upper end of the band [1/s].
+/// - `lowest`: estimate of the lowest frequency of the body [1/s]. The band begins at `lowest` / rates_below
+///   (relaxation.h). This end is changed if the ratio of both ends is below 100 or above 10,000.
+/// - `stiffness_sum`: stiffness sum by node, as in stable_step().
 void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
                      const RelaxationOutputs& out);

@@ -1,10 +1,10 @@
 // Divides the masses of nodes among elements in proportion to a stiffness at rest (docs/methods/stable_step.md 2.4).
 //
-// The stiffness K_e of an element is computed with H X = 2 mu X + lambda tr(X) I, an upper bound on dP/dF of the
-// material law at rest, with the unit matrix I. Unlike the law, this H resists rotations. The highest modes of a mesh
-// rotate little, so the highest frequency with H is within a few per cent of the true one. Each element gets the mass
-// K_e / c, with one number c for the body. These masses add up to no more than the mass M of the nodes if c is above
-// the highest eigenvalue of M^-1/2 K M^-1/2, where K is the sum of all K_e.
+// Element e gets the mass K_e / c. Its stiffness K_e is computed with H X = 2 mu X + lambda tr(X) I, an upper bound on
+// dP/dF at rest that, unlike the material law, resists rotations. The masses add up to no more than the mass M of the
+// nodes if c is above the highest eigenvalue of M^-1/2 (sum_e K_e) M^-1/2.
+//
+// The highest modes of a mesh rotate little, so the highest frequency with H is within a few per cent of the true one.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>
@@ -33,8 +33,9 @@ Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Matrix M^-1/2 K M^-1/2 of a body at rest, with the mass M and the stiffness K for H X = 2 mu X + lambda tr(X) I. Row
-/// 3 n + i belongs to component i of node n, where nodes are numbered by position along the longest side of the body.
+/// Matrix M^-1/2 K M^-1/2 of a body at rest, with the mass M of the nodes and the sum K of the stiffnesses K_e (head of
+/// the file). Row 3 n + i belongs to component i of node n. Nodes are numbered by position along the longest side of
+/// the body.
 class RestStiffness {
 public:
     RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

@@ -10,10 +10,11 @@
 
 namespace skerry {
 
-/// Greatest squared length of the differences of `count` vectors from `origin`. component(3 n + i) is component i of
-/// vector n. The result is infinite or NaN if one of the squared lengths is. The squares are compared as integers:
-/// their bit patterns have the same order, with non-finite values on top. Integers can be compared in any order and in
-/// the lanes of a register; comparisons of floating-point numbers would have to wait for each other.
+/// Greatest squared length of the differences of `count` vectors from `origin`; infinite or NaN if one of the squared
+/// lengths is. component(3 n + i) is component i of vector n.
+///
+/// The squares are compared as integers, because their bit patterns have the same order, with non-finite values on top.
+/// Unlike comparisons of floating-point numbers, those of integers need not wait for each other.
 template <class Component>
 [[gnu::always_inline]] inline Real largest_squared_length(std::size_t count, Component&& component,
                                                           const Vec3& origin = Vec3::Zero()) {

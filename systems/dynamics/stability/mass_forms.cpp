@@ -1,14 +1,12 @@
 // Chooses the matrix Q of the mass form G Q^-1 G^T of each element (docs/methods/stable_step.md 2.3). G contains the
 // gradients of the element at rest, V is its volume.
 //
-// Let w be an upper bound on omega^2 of an element, with its highest circular frequency omega, and W = w Q^-1 / V. Then
-// the stiffness of the element is at most w G Q^-1 G^T = G V W G^T. This bound is the same for x, y and z, so the
-// matrix that adds it up over all elements is a third as wide as the true stiffness matrix. The eigenvalues of this
-// matrix are sharper bounds than those of single elements.
-//
-// W is computed from a positive definite matrix Z: W = 2 mu I + lambda tr(Z) Z^-1, with Lame's mu and lambda. With
-// every Z this W bounds H = dP/dF at rest: X:H X <= X:X W for every X. A good Z is the square root of the mean of
+// Every positive definite matrix Z gives a bound V G W G^T on the stiffness of an element at rest, with Lame's mu and
+// lambda and W = 2 mu I + lambda tr(Z) Z^-1. Q is proportional to (V W)^-1. A good Z is the square root of the mean of
 // grad u grad u^T over the highest modes u. Rounds of iteration find Z and these modes together.
+//
+// The bound is the same for x, y and z, so the matrix that adds it up over all elements is a third as wide as the true
+// stiffness matrix. The eigenvalues of this matrix are sharper bounds than those of single elements.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>
@@ -64,9 +62,9 @@ Real sum_of(const Real4& x) {
 // how much the springs of Maxwell elements relax in a step (RestModuli).
 constexpr Real longer_by_forms = 1.5;
 
-// Number of blocks of elements above which a body counts as large. Such a body is cut into so many groups that the
-// modes between the groups determine the step. More than one round of iteration then gains little: with 16 rounds
-// instead of one, the steps of three meshes of 280,000 to 310,000 tetrahedra changed by 0 %, 4 % and -2 %.
+// Number of blocks of elements above which a body counts as large and gets only one round of iteration. Its step is
+// determined by the modes between its many groups. With 16 rounds instead of one, the steps of three meshes of 280,000
+// to 310,000 tetrahedra changed by 0 %, 4 % and -2 %.
 constexpr std::size_t blocks_of_large = 30'000;
 
 /// Group of elements. The group's share of the mass of its nodes is divided among the elements of this group alone.

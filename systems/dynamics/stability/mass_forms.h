@@ -12,24 +12,20 @@ namespace skerry {
 /// multiplications take about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_group = 4e8;
 
-/// Diagonal entries of the matrix Q of an implicit element, which belongs to a cluster [1/(kg m^2)]. Such an element
-/// takes no part in the division of the masses. With so small a Q, its bound limits no step. The entries are not 0,
-/// because 0 means that a block has no mass forms.
+/// Diagonal entries of the matrix Q of an implicit element, which belongs to a cluster and takes no part in the
+/// division of the masses [1/(kg m^2)]. With so small a Q, its bound limits no step. Zero would mean that a block has
+/// no mass forms.
 inline constexpr Real form_of_implicit = 1e-100;
 
-/// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). Sequential, about 10 us
-/// per tetrahedron.
+/// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). An element gets the mass
+/// form G Q^-1 G^T from its nodes, where row k of G is the gradient of node k. Sequential, about 10 us per tetrahedron.
 ///
-/// An element gets the mass form G Q^-1 G^T from its nodes, where row k of G is the gradient of node k. The sum of
-/// these forms is at most the matrix of the nodal masses, diag(mass). A Cholesky decomposition verifies this for the
-/// complete body, or for groups of elements if it would cost more than `most_products` multiplications.
-///
-/// The stiffness K and the mass M of the body then satisfy K <= max_e lambda_max(A) M. A = V H (Q x I) contains the
-/// volume V of element e, H = dP/dF, and the Kronecker product of Q and the identity I. Q does not depend on the shape,
-/// and the bound is valid for every shape. It is sharp for the rest shape.
-///
-/// `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block; 0 if nothing was found
-/// [1/(kg m^2)].
+/// A Cholesky decomposition verifies that the sum of these forms is at most diag(mass), the matrix of the nodal masses.
+/// The bound on the stable step that follows is valid for every shape, and sharp for the rest shape.
+/// - `position`: any shape that is not degenerate, for sorting the nodes [m].
+/// - `most_products`: if one decomposition for the complete body would cost more multiplications, groups of elements
+///   are verified instead.
+/// - `form`: Q by block; 0 if nothing was found [1/(kg m^2)].
 void find_mass_forms(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, Real most_products, std::span<ElementForm> form);
 

@@ -110,9 +110,9 @@ void BandDecomposition::subtract_pivots_from_two(const Pivots& pivot, std::size_
 bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
     const Real rounding = 1e-10 * limit;
     const std::size_t groups = matrix.size / matrix.group;
-    // The window stores complete groups of rows, so that no group is split at its end. Registers are loaded from
-    // aligned addresses, so each row has margins at both ends: up to a register length before the diagonal, and up to
-    // `pivots - 1` numbers and a register length after the band. The numbers in the margins are computed but not used.
+    // The window stores complete groups of rows, so that no group is split at its end. Each row has margins of unused
+    // numbers, because registers are loaded from aligned addresses: a register length before the diagonal, and
+    // `pivots - 1` numbers and a register length after the band.
     rows_ = ((matrix.width + 2 * pivots) / matrix.group + 2) * matrix.group;
     stride_ = (matrix.width + pivots + 3 * row_step) / row_step * row_step;
     window_.resize(rows_ * stride_);

@@ -25,9 +25,9 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Moduli of explicit elements at rest, including the springs of their Maxwell elements. In a longer step these springs
-/// relax more, so they contribute less to the moduli. The step is therefore assumed: `longer` times the stable step
-/// that the bounds of single elements give.
+/// Moduli of explicit elements at rest, including the springs of their Maxwell elements. The longer the step, the more
+/// these springs relax and the less they contribute. The assumed step is `longer` times the stable step that the bounds
+/// of single elements give.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
@@ -82,8 +82,8 @@ struct BandMatrix {
     FunctionRef<void(std::size_t group_index, Real* rows, std::size_t stride)> add_rows;
 };
 
-/// Tests whether all eigenvalues of a band matrix are below a limit: whether limit I - matrix, with the identity I, has
-/// a Cholesky decomposition with pivots above rounding errors. A window that moves along the diagonal stores only rows
+/// Tests whether all eigenvalues of a band matrix are below a limit: then limit I - matrix, with the identity I, has a
+/// Cholesky decomposition with pivots above rounding errors. A window that moves along the diagonal stores only rows
 /// that influence each other.
 class BandDecomposition {
 public:

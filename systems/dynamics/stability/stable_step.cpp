@@ -33,8 +33,8 @@ Index sums_of(Range blocks) {
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
 /// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one *wave* of blocks.
-/// Waves contain 1, 1, 2, 4, 8... blocks. A fast test shows that most blocks of a wave stay below the greatest bound of
-/// the earlier waves. The exact bounds of these blocks are not computed.
+/// Waves contain 1, 1, 2, 4, 8... blocks. In a fast test most blocks of a wave stay below the greatest bound of the
+/// earlier waves, and need no exact bound.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;

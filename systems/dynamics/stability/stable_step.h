@@ -19,30 +19,28 @@ struct StableStep {
 };
 
 /// Stable step of one body in its present shape. The step is rigorous: it is never longer than the exact limit.
-/// Sequential, deterministic.
+/// Sequential, deterministic. `stiffness_sum`: work memory, one entry per node.
 ///
-/// The mass of each node is shared among its elements: by frame_masses.h or mass_forms.h if the body has such masses,
-/// else in proportion to the stiffness of the elements and their mass_share. With the stiffness K_e and the mass M_e of
-/// element e, the highest circular frequency satisfies omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2). The
-/// Hessian dP/dF in the present shape is bounded as in docs/methods/stable_step.md 4. `stiffness_sum`: work memory, one
-/// entry per node.
+/// The bound follows from the highest frequencies of single elements, which share the mass of each node
+/// (docs/methods/stable_step.md 1 to 4). The shares are those of frame_masses.h or mass_forms.h if the body has such
+/// masses. Else they are in proportion to the stiffness of the elements and their mass_share.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
 /// Number of pieces of a stable-step check. A check computes stable_step() in pieces that all take about the same time.
 std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks);
-/// Continues a stable-step check until `until` of its pieces are done. `stiffness_sum` must be zero at the nodes of the
-/// body before the first piece. All inputs must stay the same until the last piece. The result does not depend on where
-/// the check is interrupted.
+/// Continues a stable-step check until `until` of its pieces are done. The result does not depend on where the check is
+/// interrupted. `stiffness_sum` must be zero at the nodes of the body before the first piece. All inputs must stay the
+/// same until the last piece.
 void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
                     StepEvaluation& check);
 /// Result of a stable-step check, available when all of its pieces are done.
 StableStep result_of(const StepEvaluation& check);
 
-/// Step that each element of these blocks would allow alone, with its mass shares [s]. It is infinite for inversion
-/// barriers (guards), elements without stiffness and unused lanes. If the body has neither mass forms nor frame masses,
-/// the shortest of these steps equals the result of stable_step().
+/// Step that each element of these blocks would allow alone, with its mass shares [s]; infinite for inversion barriers
+/// (guards), elements without stiffness and unused lanes. If the body has neither mass forms nor frame masses, the
+/// shortest of these steps is the result of stable_step().
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 
@@ -63,12 +61,10 @@ struct ElementBounds {
     decltype(&skerry::element_stiffnesses) stiffnesses = &skerry::element_stiffnesses;
 };
 
-/// Sharpens the bound of stable_step() by shifting mass from elements of low frequency to elements of high frequency
-/// (docs/methods/stable_step.md 2.1). In each of four rounds the share s of an element becomes s omega / omega_max,
-/// where omega is the frequency of the element with its present mass, and omega_max the highest omega of all elements.
-/// The bound is rigorous with any positive shares, so the shares found for the rest shape serve for every shape.
-/// `mass_share`: shares of the blocks, to which start_mass_shares() must have given their first values. Sequential, for
-/// new bodies.
+/// Sharpens the bound of stable_step() by shifting mass from elements of low frequency to elements of high frequency,
+/// in four rounds (docs/methods/stable_step.md 2.1). The bound is rigorous with any positive shares, so the shares
+/// found for the rest shape serve for every shape. `mass_share`: shares of the blocks, to which start_mass_shares()
+/// must have given their first values. Sequential, for new bodies.
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 

@@ -61,9 +61,9 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         return frequency_squared_bound(material, F, {}, volume, Q, q, threshold, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements are stable at the step to which `threshold` belongs, so their exact bounds are not needed. This
-    // quick test lets the springs relax as in that step. With unrelaxed springs nearly all elements would fail the
-    // test, since all elements at rest allow about the same step.
+    // Quick test: most elements are stable at the step to which `threshold` belongs, and need no exact bound. The
+    // springs relax as in that step. With unrelaxed springs nearly all elements would fail the test, since all elements
+    // at rest allow about the same step.
     if (threshold > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(threshold));
         const Real8 compared =

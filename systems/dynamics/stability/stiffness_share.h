@@ -19,18 +19,17 @@ inline constexpr Real step_times_frequency = 0.9 * 2;
 /// Deformation gradients F of the elements of a block.
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position);
 
-/// Weight of each element when its nodes share their masses: mass_share times the volume. If the stiffness of the
-/// material law varies with deformation, the weight is also multiplied by an upper bound of dP/dF in the present shape.
-/// At node k the element counts with |g_k|^2 times the weight, where g_k is the gradient of the element at the node.
+/// Weight of each element when its nodes share their masses (docs/methods/stable_step.md 2). At node k the element
+/// counts with |g_k|^2 times the weight, where g_k is its gradient at the node. The weight is mass_share times the
+/// volume. If the stiffness of the material law varies with deformation, it is also multiplied by an upper bound of
+/// dP/dF in the present shape.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
-/// Sets the initial mass_share of each element, which is a factor of stiffness_weight(). It is 1, except in these
-/// cases:
-/// - Bodies of several materials: if stiffness_weight() does not itself contain the stiffness of the element's
-///   material, mass_share is this stiffness. If stiffness_weight() contains the stiffness of any other material of the
-///   body, mass_share must be in Pa, too. Otherwise only ratios matter, and it is divided by the greatest stiffness of
-///   the body.
+/// Sets the initial mass_share of each element, a factor of stiffness_weight(). It is 1, except in these cases:
 /// - Inversion barriers (guards): 0, because they act only as implicit elements of a cluster.
+/// - Bodies of several materials: the stiffness of the element's material, unless stiffness_weight() already contains
+///   it. It is in Pa if stiffness_weight() contains the stiffness of any other material of the body. Otherwise only
+///   ratios matter, and it is divided by the greatest stiffness of the body.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
 /// Adds the stiffness of each element of a block to stiffness_sum at the nodes of the element, except in lanes for
@@ -55,12 +54,13 @@ inline void clear_stiffness(const ElementInputs& elements, std::size_t block, st
         for (const Index node : nodes.node[k].lane) stiffness_sum[static_cast<std::size_t>(node)] = 0;
 }
 
-/// Upper bound of omega^2 of each element of a block [1/s^2]; NaN if F is not finite. The element gets the mass m_k =
-/// mass k_k / stiffness_sum from node k, where k_k is the stiffness of the element at the node.
-///
-/// Without stiffness_sum every element has the full mass of its nodes. The result is then no bound for a body, but the
-/// frequency of the element alone. `q` is the initial guess of the corotational frame and receives the frame found.
-/// `threshold` [1/s^2]: see frequency_squared_bound().
+/// Upper bound of omega^2 of each element of a block [1/s^2]; NaN if F is not finite.
+/// - With `stiffness_sum` the element gets the mass m_k = mass k_k / stiffness_sum from node k, where k_k is the
+///   stiffness of the element at the node.
+/// - Without it every element has the full mass of its nodes. The result is then no bound for a body, but the frequency
+///   of the element alone.
+/// - `q` is the initial guess of the corotational frame and receives the frame found.
+/// - `threshold` [1/s^2]: see frequency_squared_bound().
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
                            Real threshold = 0);
@@ -74,10 +74,12 @@ inline bool has_mass_form(const ElementInputs& elements, std::size_t block) {
 Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                 LaneQuaternion<Real8>& q, Real threshold = 0);
 
-/// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the smallest
-/// of the numbers `threshold`, 1.1 `threshold`, 1.21 `threshold`... that exceeds omega^2. It is infinite if omega^2
-/// exceeds about ten times `threshold`. The springs of Maxwell elements relax, so they count less the longer the step
-/// is. They count as in a step of length `step` [s]; the bound is valid for this step and for longer ones.
+/// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]: the smallest of the
+/// numbers `threshold`, 1.1 `threshold`, 1.21 `threshold`... that exceeds omega^2. It is infinite if omega^2 exceeds
+/// about ten times `threshold`.
+///
+/// The springs of Maxwell elements count as in a step of length `step` [s]. In longer steps they relax more and count
+/// less, so the bound is valid for this step and for longer ones.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                       LaneQuaternion<Real8>& q, Real threshold, Real step);
 

@@ -1,8 +1,8 @@
-// Bounds the stiffness K of a strained body. Element e has the mass form M_e, the stiffness K_e and the bound w_e on
-// its omega^2. Since K_e <= w_e M_e, any number `base` satisfies
-//     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E .
-// (x)^+ is x if positive, else 0. M is the mass of the nodes, and E the sum of the excess (w_e - base)^+ M_e. E is
-// below M times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive weights d_i of the nodes i with masses m_i
+// Bounds the stiffness K of a body that is strained in few places (docs/methods/stable_step.md 2.5). Element e has the
+// mass form M_e, the stiffness K_e <= w_e M_e and the bound w_e on its omega^2. M is the mass of the nodes, and (x)^+
+// is x if positive, else 0. Any number `base` gives an excess matrix E with
+//     E = sum (w_e - base)^+ M_e ,     K <= base sum M_e + E <= base M + E .
+// E is below M times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive weights d_i of the nodes i with masses m_i
 // (Collatz 1942). Entries of E are scalars, since mass forms are the same for x, y and z.
 #include "systems/dynamics/stability/strained_step.h"
 
@@ -130,9 +130,9 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         }
         least = std::min(least, bound);
         if (!(bound > 0) || !std::isfinite(bound)) break;
-        // Each node weight d is multiplied by sqrt(r / r_max), or at least by 1e-3 so that it stays positive. r is the
-        // row sum divided by (mass times d), and r_max the greatest r. Nodes at which the entries of E are small need
-        // only a small weight.
+        // Multiplies each node weight d by sqrt(r / r_max), at least by 1e-3 so that it stays positive. r is the row
+        // sum divided by (mass times d), r_max the greatest r. Nodes at which the entries of E are small need only a
+        // small weight.
         for (std::size_t n = 0; n < node_mass.size(); ++n)
             parts.weight[n] *= std::sqrt(std::max(parts.row[n] / bound, Real(1e-6)));
     }

@@ -16,14 +16,15 @@ struct StableStepGoal {
 /// Number of entries in the work memory of strained_step().
 std::size_t strained_step_memory(Range nodes, Range blocks);
 
-/// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. The springs of Maxwell
-/// elements are assumed to relax for the time `goal.stable`. In a shorter step they would relax less and be stiffer, so
-/// the result is valid only if it is longer than `goal.stable`. `nodes`: range of all nodes of the elements.
-/// Sequential.
+/// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. `nodes`: range of all
+/// nodes of the elements. Sequential.
 ///
-/// One number, the base, bounds omega^2 of most elements: those that are stable in steps near `goal.longest`. For each
-/// other element, the excess of its omega^2 over the base is multiplied by its mass form. These products add up to a
-/// matrix, which is bounded by its row sums (strained_step.cpp).
+/// The result is valid only if it is longer than `goal.stable`: the springs of Maxwell elements are assumed to relax
+/// for this time. In a shorter step they would relax less and be stiffer.
+///
+/// One number, the base, bounds omega^2 of most elements: those that are stable in steps near `goal.longest`. For the
+/// other elements the excess of omega^2 over the base is added up in a matrix, which is bounded by its row sums
+/// (docs/methods/stable_step.md 2.5).
 Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
                    std::span<const Real> mass, const StableStepGoal& goal, std::span<Real> memory);
 

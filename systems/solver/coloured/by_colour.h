@@ -1,6 +1,6 @@
-// Parallel traversal of a large region: a team of workers visits the contacts of the region in the order of a
-// colouring. The impulses are bitwise equal to those of one thread that visits the contacts in the same order. Sums
-// over contacts are added block by block, so that they do not depend on the number of workers.
+// Parallel traversal of a large region: a team of workers visits the contacts in the order of a colouring
+// (colour_contacts.h). Results do not depend on the number of workers: the impulses are those of one thread in this
+// order, bit by bit, and sums over contacts are added block by block.
 #pragma once
 
 #include <algorithm>

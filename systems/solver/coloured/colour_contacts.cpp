@@ -11,11 +11,11 @@ constexpr Index colour_limit = 64;  // bits of ColouringMemory::colours_used
 // Bin for the tail, the contacts that get no colour. The bins of the hubs (nodes with many contacts) follow.
 constexpr Index tail_bin = colour_limit;
 
-/// Number of blocks into which the contacts of one colour are divided. A block has at most 64 contacts: solving it
-/// takes a microsecond, claiming it a twentieth of that. The number of blocks is a power of two or a multiple of 16, so
-/// that 2, 4, 8 or 16 workers get equal numbers of blocks.
+/// Number of blocks into which the contacts of one colour are divided. One worker solves a block, of at most 64
+/// contacts. This takes a microsecond, claiming the block a twentieth of that.
 Index blocks_of_colour(Index contacts) {
-    // If the number of workers is a power of two and at most `even_workers`, all workers get equal numbers of blocks.
+    // The number of blocks is a power of two or a multiple of `even_workers`. So 2, 4, 8 or 16 workers get equal
+    // numbers of blocks, if there are enough.
     constexpr std::uint32_t max_contacts = 64, even_workers = 16;
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + max_contacts - 1) / max_contacts;
     return static_cast<Index>(least <= even_workers ? std::bit_ceil(least)
@@ -124,8 +124,8 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
 }
 
 /// Computes the phases and blocks of the coloured order. On entry bin_begin holds the number of contacts of each bin.
-/// Layout replaces it by the index in the coloured order of the first contact of the bin, or by no_index if the
-/// contacts of the bin go to the tail.
+/// Layout replaces this number by the index of the bin's first contact in the coloured order, or by no_index if the
+/// contacts go to the tail (the last phase, solved by one worker).
 class Layout {
 public:
     Layout(ColouringMemory& memory, ColouredOrder& order) : memory_(memory), order_(order) {
@@ -221,9 +221,9 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Writes the coloured order. Contacts of one colour are sorted by node. Team lets a worker begin every phase with the
-/// same share of the list of blocks, for example its second quarter. So the worker meets mostly the same nodes in all
-/// colours and finds them in its cache. Contacts of hubs and of the tail stay in ascending order.
+/// Writes the coloured order. Contacts of one colour are sorted by node, so that a worker meets mostly the same nodes
+/// in all colours and finds them in its cache (see Team::run_phases). Contacts of hubs and of the tail stay in
+/// ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

@@ -14,9 +14,11 @@ namespace skerry {
 /// Moving nodes of a contact, padded with no_index. A node may occur twice.
 using ContactNodes = std::array<Index, 4>;
 
-/// Contacts of a block are solved one after the other by one thread. Blocks of a phase share no node and are solved
-/// concurrently. Phases are solved one after the other. The result is bitwise equal to that of one thread that solves
-/// the contacts in this order.
+/// An order of the contacts of a region in which threads can solve them concurrently. The impulses are bitwise equal to
+/// those of one thread that solves the contacts in this order. The order consists of phases, and each phase of blocks:
+/// - Phases are solved one after the other.
+/// - Blocks of a phase share no node and are solved concurrently.
+/// - Contacts of a block are solved one after the other by one thread.
 struct ColouredOrder {
     Column<Index> contact;       // the coloured order: numbers of the contacts in the region
     Column<Index> block_offset;  // index in `contact` of each block's first contact; last entry: contact count
@@ -42,18 +44,17 @@ struct ColouringMemory {
     Column<Index> node_offset, by_node;
 };
 
-/// A node with more contacts than this number is a hub. All contacts of a node need different colours. Two meshes of
-/// similar fineness take 7 to 10 colours, but a node of a coarse mesh under a fine one may have hundreds of contacts.
-/// So the contacts of a hub form one block, and colours are given to whole blocks.
+/// A node with more contacts than this number is a hub, for example a node of a coarse mesh under a fine one. All
+/// contacts of a node need different colours: two meshes of similar fineness take 7 to 10, a hub may need hundreds. So
+/// the contacts of a hub form one block, and colours are given to whole blocks.
 inline constexpr Index hub_degree = 32;
 /// A colour with fewer contacts than this number (one block) does not justify a phase of its own. Its contacts go to
 /// the tail, the last phase, which is solved by one worker.
 inline constexpr Index smallest_colour = 64;
 
 /// Colours the contacts greedily in ascending order, with at most 64 colours. Contacts without a free colour go to the
-/// tail. The result depends only on the arguments. Nodes are numbered 0 .. node_count - 1. Contacts of a colour are
-/// sorted by node. Team lets a worker begin every phase with the same share of the list of blocks, for example its
-/// second quarter. So the worker meets mostly the same nodes in all colours and finds them in its cache.
+/// tail. Contacts of a colour are sorted by node, so that a worker of a Team meets mostly the same nodes in all
+/// colours. Nodes are numbered 0 .. node_count - 1. The result depends only on the arguments.
 void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory,
                      ColouredOrder& order);
 

@@ -24,9 +24,9 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
     return same;
 }
 
-/// Numbers the nodes of the region in the order of their first appearance. `node_number` stores the number of a node at
-/// its row of NodeTable. It is not cleared between calls: an entry is valid only if region.node holds this node at the
-/// stored number.
+/// Numbers the nodes of the region in the order of their first appearance. `node_number` stores the number of each
+/// node, by row of NodeTable. It is not cleared between calls, so an entry is valid only if region.node holds this node
+/// at the stored number.
 void number_nodes(std::span<Index> node_number, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());

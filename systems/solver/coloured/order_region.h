@@ -25,9 +25,9 @@ struct ColouredRegion {
 /// Returns the nodes that an impulse of contact `row` can move, in the order of the stencil.
 ContactNodes moving_nodes(const RegionInputs& inputs, Index row);
 
-/// Orders the contacts listed in `row`. If they have the same moving nodes as in the last call, contact by contact, as
-/// in a region at rest, the function keeps the order of that call and returns false. `node_number` is scratch memory by
-/// row of NodeTable; its initial contents do not matter.
+/// Computes the coloured order of the contacts listed in `row`. If all contacts have the same moving nodes as in the
+/// last call, as in a region at rest, the function keeps the old order and returns false. `node_number`: scratch memory
+/// by row of NodeTable, with any contents.
 bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> node_number,
                   ColouredRegion& region);
 

@@ -1,7 +1,6 @@
-// Linear systems of Newton steps on contacts between bodies. The unknowns are velocities of the bodies
-// (docs/methods/region_solver.md 5.9). The matrix is the inertia matrix K minus the derivative of the contact impulses
-// with respect to the unknowns. The cost grows with the height of a stack, not with the number of contacts between two
-// bodies.
+// Linear systems of Newton steps on the contacts between bodies. The unknowns are velocities of the bodies
+// (docs/methods/region_solver.md 5.9). So the cost grows with the height of a stack, not with the number of contacts
+// between two bodies.
 #pragma once
 
 #include <array>

@@ -28,10 +28,10 @@ void subtract(Real value, Real* from) {
     *from -= value;
 }
 
-/// Operations that write one register of a product to a column of c. `subtract_from` subtracts the register. `store`
-/// overwrites the column. SubtractLastRows subtracts only the last `count` entries of the register. It serves the last
-/// rows of c if they do not fill a register: the register then begins with rows that are already done.
+/// Subtracts one register of a product of matrices from a column of c.
 constexpr auto subtract_from = [](const auto& value, Real* from) { subtract(value, from); };
+/// Subtracts only the last `count` entries of the register. It serves the last rows of c if they do not fill a
+/// register: the register then begins with rows that are already done.
 struct SubtractLastRows {
     Index count;
 
@@ -39,10 +39,11 @@ struct SubtractLastRows {
         for (Index k = 8 - count; k < 8; ++k) from[k] -= value[k];
     }
 };
+/// Overwrites a column of c by one register of a product.
 constexpr auto store = [](const Real8& value, Real* to) { store_value(value, to); };
 
-/// Computes the rows of the product a b from `row` on that fill one register: 8 rows if Part is Real8, 1 row if Part is
-/// Real. Passes each column of the result to `finish`, with the address of the same rows of c.
+/// Computes as many rows of the product a b as fill one register, from `row` on: 8 rows if Part is Real8, 1 row if Part
+/// is Real. Passes each column of the result to `finish`, with the address of the same rows of c.
 template <class Part>
 void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c, Index row, const auto& finish) {
     const Real* const start = a.data + row;

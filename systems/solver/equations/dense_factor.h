@@ -1,6 +1,6 @@
-// Dense LU factorisation, solution and products in memory of the caller, without allocation. They are used for the
-// blocks of a sparse factor (block_factor.h). Matrices are stored by columns, `stride` numbers apart. Sums are taken in
-// index order, so that the bits do not depend on the width of registers.
+// Dense LU factorisation, solution and products of matrices, without allocation, for the blocks of a sparse factor
+// (block_factor.h). Matrices are stored by columns, which begin `stride` numbers apart. Sums are taken in index order,
+// so that the bits do not depend on the width of registers.
 #pragma once
 
 #include <cstddef>

@@ -30,9 +30,10 @@ struct RigidInputs {
     std::span<const Mat3> rotation{};
     std::span<const Index> body{}, core_nodes{};  // `body`: row of BodyTable; `core_nodes`: by row of BodyTable
     // Row of AttachmentTable of the attachment that prescribes the motion of the body (the body is held), or no_index.
-    // The span is empty if no body is held. An attachment may also hold the frame of an implicit body, relative to
-    // which the body deforms. The row of the frame in RigidBodyTable then has zero velocity, and the nodes store their
-    // total velocity (docs/methods/implicit_bodies.md 7).
+    // The span is empty if no body is held.
+    //
+    // An implicit body is held by the frame relative to which it deforms. The frame's row of RigidBodyTable then has
+    // zero velocity, and the nodes store their total velocity (docs/methods/implicit_bodies.md 7).
     std::span<const Index> holder{};
 
     bool any() const { return nodes.any(); }
@@ -104,9 +105,9 @@ struct ImplicitInputs {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// Change of a node's velocity relative to the frame of its implicit body by the forces of this step, in world axes
-    /// [m/s]; zero for nodes of other bodies. It is due to elastic forces above all. In a body at rest, contact
-    /// impulses cancel this change in every step.
+    /// Change of a node's velocity by the forces of this step, relative to the frame of its implicit body, in world
+    /// axes [m/s]. It is zero for nodes of other bodies. Elastic forces cause most of it. In a body at rest, contact
+    /// impulses cancel it in every step.
     Vec3 deformation_kick(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();

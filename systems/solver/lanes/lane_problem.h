@@ -1,7 +1,8 @@
-// Problem data of small regions in SIMD lanes. Each lane holds one region of at most K contacts. Lumped masses allow
-// the dense form u_i = q_i + sum_j C_ij r_j with scalars C_ij, contact velocities u, velocities without impulses q and
-// impulses r (docs/methods/contact.md 2.1, docs/methods/region_solver.md 3). T is Real8, or Real for the scalar version
-// that a test compares with.
+// Data of small regions in SIMD lanes (docs/methods/region_solver.md 3). Each lane holds one region of at most K
+// contacts. T is Real8, or Real for the scalar version that a test compares with.
+//
+// Lumped masses allow the dense form u_i = q_i + sum_j C_ij r_j, with the contact velocities u, the velocities q
+// without impulses, the impulses r and scalars C_ij (docs/methods/contact.md 2.1).
 #pragma once
 
 #include <array>

@@ -11,10 +11,11 @@ struct LaneResult {
     bool solved = false;
 };
 
-/// Solves at most element_lanes regions of one size class, each to its tolerance. `size_class`: index in lane_sizes.
-/// Writes the impulses of solved regions. A region remains unsolved, with unchanged start impulses, if it needs more
-/// than lane_sweep_limit sweeps or if a value is not finite. The output of a region does not depend on the other
-/// regions of the batch.
+/// Solves at most element_lanes regions of one size class, each to its tolerance, and writes the impulses of solved
+/// regions. `size_class`: index in lane_sizes.
+///
+/// A region remains unsolved, with unchanged start impulses, if it needs more than lane_sweep_limit sweeps or if a
+/// value is not finite. Its output does not depend on the other regions of the batch.
 void solve_lane_batch(std::size_t size_class, std::span<const LaneRegion> region, Index max_iterations, Real relaxation,
                       std::span<LaneResult> result);
 

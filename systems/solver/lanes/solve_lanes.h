@@ -1,6 +1,6 @@
-// Accelerated Gauss-Seidel sweeps on regions in SIMD lanes (docs/methods/region_solver.md 2, 3), in the dense form of
-// LaneProblem. No operation combines the numbers of different lanes, and solved lanes do not change. The result of a
-// region therefore does not depend on the other lanes.
+// Accelerated Gauss-Seidel sweeps on small regions, one region in each SIMD lane (docs/methods/region_solver.md 2, 3).
+// The result of a region does not depend on the other lanes: no operation combines the numbers of different lanes, and
+// solved lanes do not change.
 #pragma once
 
 #include <algorithm>

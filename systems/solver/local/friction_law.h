@@ -1,6 +1,6 @@
-// Friction laws as projections of a contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6). Type V
-// is a world vector of size 3, or of size 4 with a last entry of zero. `normal` is a unit vector, `mu` holds the
-// coefficients of friction. Lazarevych et al. (2010): see docs/methods/contact.md 5.
+// Friction laws as projections of a contact's impulse (docs/methods/friction.md 2). `normal` is a unit vector, `mu`
+// holds the coefficients of friction. Type V is a world vector of size 3, or of size 4 with a last entry of zero.
+// Equations of Lazarevych et al. (2010): see docs/methods/contact.md 5.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,8 @@ inline Vec3 shortened(const Vec4& v) {
 /// Static and dynamic friction coefficients. An impulse inside the static cone sticks. An impulse outside of it slides
 /// with the dynamic coefficient.
 ///
-/// If `slide` is infinite, the row is an equation (a tie): its impulse may also pull. It then stops the velocity along
-/// the normal if `stick` is zero, and the whole velocity if `stick` is infinite.
+/// An infinite `slide` marks a tie, an equation whose impulse may also pull. A tie stops the velocity along the normal
+/// if `stick` is zero, and the whole velocity if `stick` is infinite.
 struct FrictionLimits {
     Real stick, slide;
 
@@ -42,9 +42,9 @@ inline V project_tie(const V& z, const V& normal, FrictionLimits mu) {
     return mu.stick == 0 ? V(normal.dot(z) * normal) : z;
 }
 
-/// Exact Coulomb solution of one contact with isotropic mobility. `z` is the impulse that would stop the contact. The
-/// tangential part is scaled down to the friction limit; the normal part is unchanged (docs/methods/friction.md 2.1).
-/// NaN inputs give NaN.
+/// Impulse of one contact by Coulomb's law, for isotropic mobility (docs/methods/friction.md 2.1). `z` is the impulse
+/// that would stop the contact. The result is zero if `z` pulls; otherwise the tangential part of `z` is scaled down to
+/// the friction limit. NaN inputs give NaN.
 template <class V>
 inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -75,9 +75,8 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     return result;
 }
 
-/// Euclidean projection of z onto the cone |z_t| <= mu z_n, for the error measures: P_K of docs/methods/friction.md
-/// 2.5. gnu::flatten is needed because gcc would otherwise call functions of Eigen for single operations, and vectors
-/// would go through memory.
+/// Euclidean projection of z onto the cone |z_t| <= mu z_n, for the error measures (P_K of docs/methods/friction.md
+/// 2.5). gnu::flatten keeps vectors in registers: without it, gcc would call functions of Eigen for single operations.
 template <class V>
 [[gnu::flatten]] inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
@@ -97,9 +96,9 @@ inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Fricti
     return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
 }
 
-/// W(lambda) of equation (19) of Lazarevych et al. (2010), interpreted as in docs/methods/contact.md 5.6. It is the
-/// part of the residual along which the impulse may move without violating its limits. A zero impulse can only grow. An
-/// impulse at the friction limit cannot move outwards.
+/// W(lambda) of equation (19) of Lazarevych et al. (2010): the part of the residual along which the impulse may move
+/// without violating its limits (docs/methods/contact.md 5.6). A zero impulse can only grow. An impulse at the friction
+/// limit cannot move outwards.
 template <class V>
 inline V feasible_direction(const V& residual, const V& impulse, const V& normal, FrictionLimits mu,
                             Friction friction) {

@@ -22,11 +22,13 @@ struct AxisBounds {
 /// Returns the impulse of motor and dry friction together, where u = w r + b is the axis velocity and w the mobility.
 /// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
-    // Motor and friction are two drives. Each pushes towards its target velocity with at most its greatest impulse; the
-    // target of friction is 0. `lower_drive`, `upper_drive`: greatest impulses of the drives with the lower and with
-    // the higher target. The sum of both impulses is a falling staircase of u: lower_drive + upper_drive below the
-    // lower target, upper_drive - lower_drive between the targets, -lower_drive - upper_drive above the higher one. At
-    // a target it takes any value of the jump.
+    // Motor and friction are two drives, each with a target velocity (0 for friction) and a greatest impulse.
+    // `lower_drive`, `upper_drive`: greatest impulses of the drives with the lower and with the higher target. The sum
+    // of the impulses of both drives depends on u:
+    // - below the lower target: lower_drive + upper_drive
+    // - between the targets: upper_drive - lower_drive
+    // - above the higher target: -lower_drive - upper_drive
+    // - at a target: any value between those on both sides
     const bool motor_is_lower = axis.target < 0;
     const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
                upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;
@@ -62,8 +64,8 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     if (!(axis.max_impulse > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
     // `lower_drive`, `upper_drive`: as in drive_impulse. If the sum of both drives is at least upper_drive -
-    // lower_drive, the axis is not faster than the lower target: the upper drive has its full strength, and the lower
-    // one gives the rest. Otherwise the lower drive brakes with full strength.
+    // lower_drive, the axis is not faster than the lower target, and the upper drive has its full strength. Otherwise
+    // the lower drive brakes with full strength.
     const bool motor_is_lower = axis.target < 0;
     const Real lower_drive = motor_is_lower ? axis.max_impulse : axis.friction,
                upper_drive = motor_is_lower ? axis.friction : axis.max_impulse;

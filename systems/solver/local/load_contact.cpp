@@ -6,9 +6,9 @@
 namespace skerry {
 namespace {
 
-/// `before`: contact velocity at the start of the step [m/s]. `now`: predicted contact velocity after the forces of the
-/// step have acted [m/s]. It leaves out the velocity change by the deformation of implicit bodies, because contact
-/// impulses cancel this change in a body at rest.
+/// Contact velocity before and after the forces of the step [m/s]. `now` is predicted, without contact impulses. It
+/// leaves out the velocity change by the deformation of implicit bodies, because contact impulses cancel this change in
+/// a body at rest.
 struct KickVelocities {
     Vec3 before, now;
 };
@@ -47,8 +47,8 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     const auto [before, coming] = kick_velocities(inputs, row, velocity_next);
     const Real approach = before.dot(inputs.normal[row]);
     // A contact is an impact only if its approach speed clearly exceeds the velocity change by the forces of one step
-    // (docs/methods/contact.md 3.2). The weight alone gives a resting contact the speed g h, and elastic forces can
-    // press on a node in every step. If such contacts rebounded, the node would bounce forever.
+    // (docs/methods/contact.md 3.2). Otherwise a node at rest would bounce forever, because weight and elastic forces
+    // press on it in every step.
     const Real kick_speed = std::abs(coming.dot(inputs.normal[row]) - approach);
     constexpr Real clearly = 2;  // least ratio of the approach speed of an impact to the velocity change by forces
     const Real slowest_impact =
@@ -64,9 +64,9 @@ Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> 
     const Vec3& normal = inputs.normal[row];
     const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal,
                turn = slip - slip_before;
-    // If the forces nearly stop or reverse the sliding, no direction at the middle of the step is defined, and the
-    // correction is zero. The factor `fading` makes the correction a continuous function of the velocities.
-    // `fading` is 1 if the velocity change is at most a quarter of the sliding speed, and 0 if it is at least a half.
+    // `fading` is 1 if the forces change the slip by at most a quarter of the sliding speed, and 0 if by at least a
+    // half. It keeps the correction continuous: if forces nearly stop or reverse the sliding, no direction at the
+    // middle of the step is defined.
     constexpr Real fade_end = 2, slope = 4;
     const Real fading = fade_end - slope * turn.norm() / slip_before.norm();
     if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();

@@ -16,26 +16,28 @@ namespace skerry {
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                   const SolverSettings& settings, Real h);
 
-/// Correction of the direction of friction [m/s]. Friction should act along the sliding direction at the middle of the
-/// step. The friction law uses the velocity at the end of the step, whose direction differs by a term proportional to
-/// h. The correction is half of the change of the sliding velocity by the forces of this step, perpendicular to the
-/// sliding direction. It is zero if there is no friction, no sliding or no change of direction. It is also zero for
-/// friction that depends on the direction, because such friction itself turns the slip.
+/// Correction of the direction of friction (docs/methods/contact.md 3.3): half of the change of the sliding velocity by
+/// the forces of this step, perpendicular to the sliding direction [m/s]. With it, friction acts along the sliding
+/// direction at the middle of the step, although the friction law uses the velocity at the end.
+///
+/// It is zero for ties, without friction or sliding, and for friction that depends on the direction, because such
+/// friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
-/// Half of the tangential velocity change at the contact that the rotation of rigid and implicit bodies causes within
-/// the step [m/s]. A node of a rotating body moves along an arc. The friction law uses the mean velocity along the arc,
-/// so a sticking contact stays at the same point of both surfaces. Zero for ties, which have this term in their
-/// prescribed velocity, and if there is no friction.
+/// Half of the tangential velocity change of the contact point that the rotation of rigid and implicit bodies causes
+/// within the step (docs/methods/contact.md 3.3) [m/s]. With it, the friction law uses the mean velocity of a point on
+/// an arc, so a sticking contact stays at the same point of both surfaces.
+///
+/// Zero without friction, and for ties, which have this term in their prescribed velocity.
 Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real h);
 
 /// Velocity that the contact velocity contains beside the velocities of the nodes: the bias along the normal, minus the
 /// surface velocity, plus arc_slip, minus midpoint_slip [m/s]. `bias`: contact_bias.
 Vec3 contact_offset(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real bias, Real h);
 
-/// Loads contact `row`. `local(node)` returns the velocity row of a moving node in the region. `velocity_next` holds
-/// the predicted node velocities. A node moves with a rigid body if `on_rigid_body(node, weight)` returns true; such a
-/// node is omitted from the LumpedContact.
+/// Loads contact `row`. `velocity_next`: predicted node velocities. `local(node)`: velocity row of a moving node in the
+/// region. `on_rigid_body(node, weight)`: true if the node moves with a rigid body; the LumpedContact omits such a
+/// node.
 template <class Local, class Elsewhere>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                            const SolverSettings& settings, Real h, Local&& local, Elsewhere&& on_rigid_body) {
@@ -64,9 +66,9 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
         contact.diagonal += weight * weight * inverse_mass;
         lightest = std::max(lightest, inverse_mass);
     }
-    // Lower limit of the ratio of the mobility to the greatest inverse mass of the nodes. This ratio is about a squared
-    // weight. If all weights of moving nodes are below 1e-6, these nodes would have to move a million times faster than
-    // the contact. Such a contact counts as immovable.
+    // A contact counts as immovable if the ratio of its mobility to the greatest inverse mass of its nodes is at most
+    // this value. The ratio is about a squared weight. With weights below 1e-6, nodes would have to move a million
+    // times faster than the contact.
     constexpr Real smallest_share = 1e-12;
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;

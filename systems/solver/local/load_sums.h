@@ -39,10 +39,9 @@ struct LoadSums {
     }
 };
 
-/// Scale by which the error e_nat is divided [sqrt(J)] (docs/methods/errors.md 2.1, 2.2). Apart from a small lower
-/// bound, it excludes velocities that no impulse stops, such as sliding. If the scale included them, the allowed error
-/// of sliding or slightly open contacts would not decrease with the step length. The errors of many short steps would
-/// then add up.
+/// Scale by which the error e_nat is divided (docs/methods/errors.md 2.1, 2.2) [sqrt(J)]. Apart from a small lower
+/// bound, it excludes velocities that no impulse stops, such as sliding. Otherwise allowed errors of sliding or
+/// slightly open contacts would add up over many short steps.
 Real error_scale(const LoadSums& sums, Real gravity, Real h, Real tolerance);
 
 }  // namespace skerry

@@ -72,9 +72,9 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
         [](const LumpedContact& of, const Vec4& change, Vec4* moved) { apply_impulse(of, change, moved); });
 }
 
-/// Natural map F_i of docs/methods/errors.md 1: the impulse minus the impulse that the friction law gives for the
-/// velocity u. Uses the De Saxce form for a cone with equal static and dynamic coefficients, otherwise the residual of
-/// the contact step. gnu::flatten keeps vectors in registers (see project_onto_cone).
+/// Residual of the friction law at the velocity u: the impulse minus the impulse that the law gives (natural map F_i of
+/// docs/methods/errors.md 1). Uses the De Saxce form for a cone with equal static and dynamic coefficients, otherwise
+/// the residual of the contact step. gnu::flatten: see project_onto_cone.
 [[gnu::flatten]] inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse,
                                          const Vec4& u) {
     const FrictionLimits mu = contact.friction;

@@ -11,38 +11,39 @@
 
 namespace skerry {
 
-/// Penetrations up to this depth are not corrected [m]. The first term is the drift of a hundred steps: a resting
-/// contact solved to a tolerance of 1e-3 sinks by at most g h^2 / 1000 per step. The second term is the rounding error
-/// of positions some kilometres from the origin.
+/// Penetrations up to this depth are not corrected [m]. The first term is the drift of a hundred steps: with the
+/// tolerance 1e-3, a resting contact sinks by at most g h^2 / 1000 per step. The second term is the rounding error of
+/// positions some kilometres from the origin.
 inline Real push_slop(Real gravity, Real h) {
     constexpr Real of_kick = 0.1, rounding = 1e-12;  // fraction of g h^2; rounding error of positions [m]
     return of_kick * gravity * h * h + rounding;
 }
 
-/// Speed at which a penetration `depth` is corrected [m/s] (docs/methods/contact.md 3.4). One of its upper bounds
-/// limits the kinetic energy m v^2 / 2 to half a thousandth of the work of lifting the mass m by `depth`. This bound
-/// would be zero without gravity, so it is at least a hundredth of recovery_speed.
+/// Speed at which a penetration `depth` is corrected (docs/methods/contact.md 3.4) [m/s].
 inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
     // Bounds of the speed, as fractions of sqrt(gravity depth) and of recovery_speed.
     constexpr Real of_fall = 0.03, of_limit = 0.01;
+    // Limits the kinetic energy m v^2 / 2 to half a thousandth of the work of lifting the mass m by `depth`. Without
+    // gravity a hundredth of recovery_speed remains.
     const Real cheap = std::max(of_fall * std::sqrt(gravity * depth), of_limit * settings.recovery_speed);
     return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }
 
 /// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n, which moves positions only
-/// [m/s]. `normal_velocity`: u_n, the normal velocity after the velocity solve. A negative bias requests a push. A
-/// contact that does not penetrate requests none, even if the velocity solve left an error. So a group of contacts
-/// without penetration gets zero pseudo velocities, no matter whether it is a region of its own or is solved together
-/// with other groups that it does not touch.
+/// [m/s]. A negative bias requests a push. `normal_velocity`: normal velocity after the velocity solve.
+///
+/// A contact that does not penetrate requests no push, even if the velocity solve left an error. So groups of contacts
+/// without penetration get zero pseudo velocities, alone or in one region with other groups.
 inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSettings& settings, Real gravity, Real h) {
     if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Bias of a contact whose gap shrinks because a rotation of a body moves the contact point on an arc [m/s]. `loss` <=
-/// 0: rate of change of the gap by the arc, which the contact velocity does not include. A penetrating contact is
-/// pushed against the whole loss. At any other contact, the push compensates only the part of the loss that would make
-/// the gap negative.
+/// Version of push_bias for a contact point that moves on an arc, because a body rotates [m/s]. `bias`: result of
+/// push_bias. `loss` <= 0: rate of change of the gap by the arc, which the contact velocity does not include. The push
+/// compensates
+/// - the whole loss at a penetrating contact,
+/// - only the part that would make the gap negative at any other contact.
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;

@@ -1,10 +1,11 @@
-// Acceleration of sweeps (docs/methods/region_solver.md 2) by Nesterov's extrapolation. It is restarted when a sweep
+// Acceleration of sweeps by Nesterov's extrapolation (docs/methods/region_solver.md 2). It is restarted when a sweep
 // moves the impulses against the previous direction, or by much more than earlier sweeps. A watchdog returns to plain
 // sweeps if there is no progress.
 //
-// T is Real, or Real8 for eight regions in SIMD lanes; the result of each lane is bitwise equal to that of a region
-// solved alone. The constants were tuned by hand on generated problems: sheets, stacks, and jams, which are sheets with
-// normals tilted by up to 70 degrees.
+// T is Real, or Real8 for eight regions in SIMD lanes. Each lane has the bits of a region solved alone.
+//
+// The constants were tuned by hand on generated problems: sheets, stacks, and jams (sheets with normals tilted by up to
+// 70 degrees).
 #pragma once
 
 #include <algorithm>
@@ -43,8 +44,8 @@ private:
     T momentum_ = T{} + 1, smallest_change_ = T{} + infinity;
 };
 
-/// The watchdog switches to plain (not accelerated) sweeps after this many sweeps in a row without progress. In a long
-/// solve the limit grows: it is half of the number of sweeps since the start or the last switch, if this is more.
+/// Number of sweeps in a row without progress after which the watchdog switches to plain (not accelerated) sweeps. In a
+/// long solve the number is half of the sweeps since the start or the last switch, if this is more.
 inline constexpr Index watchdog_patience = 60;
 
 /// Decides whether sweeps are accelerated. The version for lanes never intervenes, because lanes do at most

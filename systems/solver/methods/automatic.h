@@ -23,9 +23,10 @@ inline Real newton_step_cost(Index contacts) {
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators with memory for dense Newton steps and a known number of couplings. Operators without such memory and
-/// without their own Newton steps use accelerated sweeps only (run_method.h): in the engine, the warm start of the next
-/// time step reduces the remaining error at less cost than a factorisation.
+/// Operators with memory for dense Newton steps and a known number of couplings.
+///
+/// Operators that have neither this memory nor their own Newton steps use accelerated sweeps only (run_method.h): in
+/// the engine, the warm start of the next time step reduces the remaining error at less cost than a factorisation.
 template <class Op>
 concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
@@ -89,9 +90,11 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
     return result(test.result());
 }
 
-/// Starts with as many sweeps as cost about two Newton steps. The convergence rate of these sweeps then predicts
-/// whether the same number of sweeps again would converge (or the remaining allowed sweeps, if these are fewer). If
-/// not, Newton steps are taken. If the Newton steps fail, the next group of sweeps is twice as long.
+/// Alternates sweeps and Newton steps:
+/// 1. Take as many sweeps as cost about two Newton steps, but at least min_sweeps.
+/// 2. Repeat if, at their convergence rate, sweeps at the cost of two Newton steps (or the remaining allowed sweeps, if
+///    these are fewer) would converge.
+/// 3. Otherwise take Newton steps. If they fail, go to 1 with twice as many sweeps.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // Newton steps do not support the friction pyramid.

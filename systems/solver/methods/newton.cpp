@@ -31,9 +31,9 @@ CoulombImpulse coulomb_impulse(const Vec3& z, const Vec3& normal, FrictionLimits
     return {along * normal + mu * along * h, pressing + turning + mu * h * normal.transpose()};
 }
 
-/// Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i), where P(z) is the impulse of Coulomb's law for a
-/// contact that the impulse z would stop. r: impulse, u: contact velocity, D: scalar mobility. The class may overwrite
-/// all workspace vectors of the operator except slot 0, which holds the best iterate.
+/// Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i), with the impulses r, the contact velocities u and
+/// the scalar mobilities D. P(z) is the impulse of Coulomb's law for a contact that the impulse z would stop. All slots
+/// of the operator's workspace may be overwritten except slot 0, which holds the best iterate of the caller.
 class NewtonSteps {
 public:
     NewtonSteps(AnyOperator& op, NewtonMemory& memory)
@@ -47,7 +47,7 @@ public:
 
     /// Takes at most `limit` steps, until the error is within the tolerance or several steps in a row do not lower it.
     /// Single steps may raise it, as long as the sets of sticking and sliding contacts are not yet correct. The final
-    /// impulse is the best one. `error` is the error of the present impulse.
+    /// impulse is the best one. `error`: error of the present impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
         constexpr Index patience = 4;  // number of steps without a lower error before giving up (docs/decisions/0004)
         const std::span<Vec4> best = op_.workspace(2);
@@ -106,9 +106,9 @@ private:
         return memory_.change.allFinite();
     }
 
-    /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) of the natural map F, and the right-hand side -F. P' is
-    /// the derivative of P, D the scalar mobilities, W the Delassus operator. The right-hand side includes the effect
-    /// of the opening contacts: their impulse change is known, because their impulses become zero.
+    /// Fills the Jacobian J = I - P' (I - D^-1 W) of the natural map F, and the right-hand side -F, with the derivative
+    /// P' of P, the mobilities D and the Delassus operator W. The right-hand side includes the effect of the opening
+    /// contacts, whose impulses become zero.
     void fill_equations() {
         // If there are more sticking contacts than the bodies have degrees of freedom, their impulses are not unique,
         // and the matrix is singular. A small multiple of the identity selects one solution. It changes the steps but

@@ -1,6 +1,6 @@
-// Semismooth Newton method on the natural map of the exact Coulomb law (Alart and Curnier 1991;
-// docs/methods/region_solver.md 5.6), with a dense factorisation. It is used for small regions, as an independent check
-// of the other methods, and when sweeps take longer than a factorisation.
+// Semismooth Newton method for the exact Coulomb law, with a dense factorisation (Alart and Curnier 1991;
+// docs/methods/region_solver.md 5.6). It is used for small regions, when sweeps take longer than a factorisation, and
+// as an independent check of the other methods.
 #pragma once
 
 #include "systems/solver/methods/any_operator.h"
@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// The steps end when several in a row do not lower the error. A single step may raise it, as long as the sets of
-/// sticking and sliding contacts are not yet correct. The function may overwrite all workspace vectors except slot 0,
-/// which holds the best iterate.
+/// Takes at most `limit` Newton steps from the present impulse, whose error is `error`. They end early if several in a
+/// row do not lower the error; a single step may raise it. The function may overwrite all workspace vectors except slot
+/// 0, which holds the best iterate of the caller.
 SolveResult take_newton_steps(AnyOperator& op, NewtonMemory& memory, Real error, Real tolerance, Index limit);
 
 /// Alternates sweeps and Newton steps. The number of sweeps doubles each time the Newton steps do not converge. Newton

@@ -40,9 +40,8 @@ struct ConjugateLimits {
 };
 
 /// Runs the conjugate gradient phase from the present impulse. The final impulse is the one that converged, otherwise
-/// the best one, which may be the start. The error is measured at the iterations that ErrorTest schedules. This is done
-/// even if the number of iterations is fixed, because the error can grow until overflow. The result holds the error of
-/// the final impulse.
+/// the best one, which may be the start. The result holds its error. The error is measured even if the number of
+/// iterations is fixed, because it can grow until overflow.
 SolveResult run_conjugate_gradients(AnyOperator& op, const SolveLimits& limits, const ConjugateLimits& phase,
                                     ConjugateBeta formula, ErrorTest<AnyOperator>& test) {
     if (test.ends(0)) return test.result();

@@ -133,7 +133,7 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     if (change.isZero(0)) return 0;
     memory_.impulse[index] = next;
     const Real size = change.dot(times(contact.diagonal, change));
-    // Adds this contact's estimated part of |F|^2. F is the natural map with the factor 1 instead of 1/D_i
+    // Adds an estimate of |F_i|^2, where F_i is the natural map with the factor 1 instead of 1/D_i
     // (docs/methods/errors.md 3). For an impulse change d, |F_i| is estimated as the smaller of |d| and the velocity
     // change that d causes.
     swept_ += std::min(change.squaredNorm(), mobility(i) * size);

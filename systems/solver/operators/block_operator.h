@@ -52,9 +52,10 @@ struct BlockMemory {
 };
 
 /// Residual of the friction law of a contact with the impulse r and the velocity u: r minus a projection onto the
-/// admissible impulses (for the cone: of r - u - mu |u_t| n). It is zero for a solution. It is the natural map F_i with
-/// the factor 1 instead of 1/D_i (docs/methods/errors.md 3). `friction`: cone of FCLIB, or pyramid of Lazarevych et al.
-/// (2010).
+/// admissible impulses. It is zero for a solution. It is the natural map with the factor 1 instead of 1/D_i
+/// (docs/methods/errors.md 3). `friction`:
+/// - cone of FCLIB: r - u - mu |u_t| n is projected
+/// - pyramid: that of Lazarevych et al. (2010)
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// Operator of one region: the contacts [begin, end) of `memory`. No block of W may couple these contacts to contacts

@@ -73,9 +73,9 @@ Index BodyOperator::body_id_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + traversal_.owner(node);
 }
 
-/// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or a group of nodes of
-/// one deformable body that touch the same other body (for a node that touches several bodies its first contact
-/// decides). Most of these nodes couple only to their own body and to that other body, which keeps the matrix sparse.
+/// Groups the unknowns into parts, the blocks of the matrix. A part is a rigid body, or a group of nodes of one
+/// deformable body that touch the same other body (decided by the first contact of a node). Most of these nodes couple
+/// only to these two bodies, which keeps the matrix sparse.
 void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
@@ -283,9 +283,9 @@ Mat3 sticking(const RigidPart& part) {
     return scaled * scaled.transpose();
 }
 
-/// Impulse that the law of a contact gives for the velocity u and the trial impulse z = start - u / soft, and the
-/// derivative of this impulse with respect to z. `soft`: compliance of the contact. If friction depends on the
-/// direction, Coulomb's law is applied to scaled variables, and the derivative is with respect to -u / soft.
+/// Impulse that the law of a contact gives for the velocity u, and its derivative by the trial impulse z = start - u /
+/// soft. `soft`: compliance of the contact. If friction depends on the direction, Coulomb's law is applied to scaled
+/// variables (docs/methods/friction.md 4.2), and the derivative is by -u / soft.
 LawImpulse law_impulse(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
     if (part.across == 1) return coulomb_response(start - u / soft, part.frame[0].head<3>(), mu);
     const Mat3 scaled = scaled_frame(part);
@@ -300,14 +300,13 @@ LawImpulse law_impulse(const RigidPart& part, const Vec3& start, const Vec3& u, 
 
 }  // namespace
 
-/// Evaluates the motion `present`: sets the impulses r_i = P(start_i - u_i / (softness D_i)) with P of LawImpulse, the
-/// contact velocity u_i and the mobility D_i. `softness`: compliance of the contacts as a fraction of D_i. Sets the
-/// velocities of the region and `produced` to the motion that these impulses produce. With d = produced - present and
-/// the inertia matrix K, sets the right-hand side to K d and returns the merit d . K d [J].
-///
-/// Unless `evaluation` is `value`, the function also builds the matrix. If `evaluation` is `turns`, and the region has
-/// implicit bodies, it also marks contacts whose sliding direction is opposite to that in the last matrix.
-/// stop_reversed then changes the equations of these contacts.
+/// Evaluates the motion `present`: returns its merit d . K d [J], with d = produced - present and the inertia matrix K.
+/// 1. Sets the impulses r_i = P(start_i - u_i / (softness D_i)), with P of LawImpulse, the contact velocities u_i, the
+///    mobilities D_i, and the softness, the compliance of the contacts as a fraction of D_i.
+/// 2. Sets the velocities of the region and `produced` to the motion that these impulses produce.
+/// 3. Sets the right-hand side to K d and, unless `evaluation` is `value`, builds the matrix.
+/// 4. If `evaluation` is `turns` and the region has implicit bodies, marks contacts whose sliding direction is opposite
+///    to that in the last matrix. stop_reversed then changes their equations.
 Real BodyOperator::evaluate_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation evaluation) {
     const bool with_matrix = evaluation != Evaluation::value;
     if (with_matrix) equations.start_from_inertia();
@@ -331,10 +330,9 @@ Real BodyOperator::evaluate_motion(BodyEquations& equations, std::span<const Vec
     return merit;
 }
 
-/// Changes the right-hand side for contacts whose sliding direction has reversed. Between the two directions lie the
-/// velocities at which the contact sticks. For hard contacts this range is so small that Newton steps for sliding would
-/// jump over it again and again. So the matrix treats these contacts as sticking, and the right-hand side contains the
-/// impulses that would stop them.
+/// Changes the right-hand side for contacts whose sliding direction has reversed: it gets the impulses that would stop
+/// them, because the matrix treats them as sticking. Newton steps for sliding would jump again and again over the small
+/// range of velocities at which a hard contact sticks.
 void BodyOperator::stop_reversed(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
@@ -377,10 +375,10 @@ std::optional<Real> BodyOperator::step_with_last_states(BodyEquations& equations
     return evaluate_motion(equations, start, Evaluation::turns);
 }
 
-/// One Newton step from the present motion, whose merit is `merit`, with a line search. The step takes the first length
-/// of 1, 1/2, 1/4, ... at which the merit from evaluate_motion is below 0.9 times `merit`. If there is none, it takes
-/// the length with the smallest merit. If it stops contacts whose sliding has reversed, it may take length 1 although
-/// the merit rises, a few times per round. Returns the new merit, or nothing if the factorisation broke down.
+/// One Newton step from the present motion, with a line search. `merit`: merit of this motion. Returns the new merit,
+/// or nothing if the factorisation broke down. The length of the step is
+/// - the first of 1, 1/2, 1/4, ... with a merit below 0.9 times `merit`, otherwise the length with the smallest merit,
+/// - or, a few times per round, 1 in spite of a higher merit, if the step stops contacts whose sliding has reversed.
 std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real merit) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
@@ -416,9 +414,10 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
 namespace {
 
 // A round is a sequence of Newton steps with fixed start impulses and compliant contacts. The softness is this
-// compliance as a fraction of the mobility D. A smaller value needs fewer rounds, but more steps per round. Soft bodies
-// converge at the largest value, stiff bodies at a hundredth of it, and a light body under a heavy one at a small
-// fraction of the mass ratio. So the softness is adapted to the number of steps of the last round.
+// compliance as a fraction of the mobility D. A smaller value needs fewer rounds, but more steps per round.
+//
+// Soft bodies converge at the largest softness, stiff bodies at a hundredth of it, and a light body under a heavy one
+// at a small fraction of the mass ratio. So the softness is adapted to the number of steps of the last round.
 constexpr Real max_softness = 0.3, min_softness = 1e-9;
 // Softness of the first round for regions with deformable bodies. Their rounds converge even at a small softness, since
 // contacts that reverse their sliding are stopped (stop_reversed).

@@ -1,7 +1,8 @@
-// Delassus operator W of regions with rigid bodies. They may also contain implicit bodies, clusters, and nodes with
-// their own mass. The blocks of W are 3x3 matrices. Like LumpedOperator, it stores the velocities that the impulses
-// produce. A rigid body has two velocity rows: the velocity of its centre and its spin (docs/methods/rigid_bodies.md
-// 3).
+// Delassus operator W of regions with rigid bodies, which maps contact impulses to contact velocities. The regions may
+// also contain implicit bodies, clusters, and nodes with their own mass.
+//
+// The blocks of W are 3x3 matrices. Like LumpedOperator, the operator stores the velocities that the impulses produce.
+// A rigid body has two velocity rows: the velocity of its centre and its spin (docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include <array>
@@ -66,11 +67,12 @@ public:
     /// the first call.
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
     Real newton_step_cost() { return newton_memory().cost(); }  // estimate [ns]
-    /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies
-    /// (docs/methods/region_solver.md 5.10). They are taken in rounds, and deformations are updated once per round. The
-    /// rounds end when one reduces the error little. corrects_rigid_modes() is true if the correction pays off: some
-    /// implicit body is not held, there are no clusters, and there are many contacts per body.
+    /// Coarse correction: rounds of Newton steps in which deformable bodies move as rigid bodies
+    /// (docs/methods/region_solver.md 5.10). Deformations are updated once per round. The rounds end when one reduces
+    /// the error little.
     SolveResult correct_rigid_modes(Real error, Real tolerance, Index limit);
+    /// True if the coarse correction pays off: some implicit body is not held, there are no clusters, and there are
+    /// many contacts per body.
     bool corrects_rigid_modes() const;
     Real sweep_cost() const;  // estimate [ns]
 

@@ -1,7 +1,10 @@
-// Interface between methods and contact problems: the Delassus operator W = J M^-1 J^T, formed only where necessary,
-// and the friction law of each contact. J maps velocities of nodes and bodies to contact velocities; M is the mass
-// matrix. The operators are LumpedOperator (stores node velocities; used in a step of the engine), BodyOperator (rigid
-// bodies) and BlockOperator (explicit blocks of W; problems from files). NormalRows supports accelerated sweeps only.
+// Interface between solver methods and contact problems: the Delassus operator W = J M^-1 J^T, formed only where
+// necessary, and the friction law of each contact. J maps velocities of nodes and bodies to contact velocities; M is
+// the mass matrix. Operators:
+// - LumpedOperator: stores node velocities; used in a step of the engine
+// - BodyOperator: regions with rigid bodies
+// - BlockOperator: explicit blocks of W; problems from files
+// - NormalRows: contacts without friction; supports accelerated sweeps only
 #pragma once
 
 #include <concepts>

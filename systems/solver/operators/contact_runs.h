@@ -1,9 +1,12 @@
 // Sweeps over contacts on implicit bodies (docs/methods/implicit_bodies.md 4).
 //
-// An impulse on a node moves all touched nodes of its body, those with contacts. But the next contacts of a sweep need
-// only the new velocities of their own nodes. So the contacts are divided into *runs*: sequences of consecutive
-// contacts with few nodes. During a run, impulses move only the nodes of the run. At the end of the run, the sums of
-// the impulses by node move all other touched nodes. The result is that of a sweep without runs, up to rounding.
+// An impulse on a node moves all touched nodes of its body, those with contacts, but the next contacts of a sweep need
+// only the velocities of their own nodes. So the contacts are divided into *runs*: sequences of consecutive contacts
+// with few nodes.
+// - During a run, impulses move only the nodes of the run.
+// - At the end of the run, the sums of the impulses by node move all other touched nodes.
+//
+// The result is that of a sweep without runs, up to rounding.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// Traversals of the contacts of a region. A traversal defines the visiting order of the contacts, the number of
-// threads, and the effect of an impulse on the velocities. Traversals are types: shared code is written once and
-// compiled separately for each traversal.
+// Traversals of the contacts of a region. A traversal is a type that defines the visiting order of the contacts, the
+// number of threads, and the effect of an impulse on the velocities. Shared code is written once and compiled for each
+// traversal.
 #pragma once
 
 #include <concepts>

@@ -14,8 +14,8 @@ struct LumpedMemory : ContactMemory {
 };
 
 /// Operator of a region with lumped masses. For a given order of the contacts, the bits of the impulses do not depend
-/// on the type of the traversal. The bits of sums over contacts (error, squared change of a sweep) do depend on it,
-/// because each traversal adds the terms in its own order.
+/// on the type of the traversal. The bits of sums over contacts (error, squared change of a sweep) do, because each
+/// traversal adds in its own order.
 template <RegionTraversal Traversal>
 class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Traversal>, Traversal, LumpedMemory> {
     using Base = RegionOperatorBase<LumpedOperatorBy<Traversal>, Traversal, LumpedMemory>;

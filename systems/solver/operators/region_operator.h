@@ -27,9 +27,11 @@ struct ContactMemory {
     std::span<Vec4> push_before{};  // by velocity row: pseudo velocities before the last sweep of the split impulse
 };
 
-/// Base class of operators. `Own` is the operator: it derives from this class and adds sweeps. It also defines moves()
-/// (whether a contact can move anything), squared_residual() (the contact's term in the squared error), free_velocity()
-/// (velocity without impulses) and add_response() (velocity change by impulses).
+/// Base class of operators. `Own` is the operator that derives from it. It adds sweeps and defines
+/// - moves(): whether a contact can move anything,
+/// - squared_residual(): the contact's term in the squared error,
+/// - free_velocity(): velocity without impulses,
+/// - add_response(): velocity change by impulses.
 template <class Own, RegionOrder Traversal, class Memory>
 class RegionOperatorBase {
 public:

@@ -1,6 +1,6 @@
-// Traversal of a region whose contacts touch rigid bodies. It supports nodes with their own mass, nodes of
-// clusters, and nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). The
-// velocities of implicit nodes are relative to the motion of the frame.
+// Traversal of a region whose contacts touch rigid bodies. The region may also have nodes with their own mass, of
+// clusters, and of implicit bodies. Velocities of implicit nodes are relative to the moving frame in which their body
+// deforms (docs/methods/implicit_bodies.md 4).
 #pragma once
 
 #include <span>
@@ -22,8 +22,7 @@ public:
 
     bool any_deforms() const { return implicit_->any(); }
     /// Applies an impulse of a contact to all nodes that are on no implicit body. For nodes of implicit bodies it adds
-    /// the weighted impulse to `sum`, which has one entry per node of the region. SpreadImpulses later computes the
-    /// motion of the implicit bodies from these sums.
+    /// the weighted impulse to `sum` (by node of the region), from which SpreadImpulses later computes their motion.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (touched_index(contact.node[a]) == no_index)

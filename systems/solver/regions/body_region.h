@@ -10,9 +10,10 @@
 
 namespace skerry {
 
-/// A region that BodyOperator solves. Its velocity rows are: two per rigid or implicit body (velocity, angular
-/// velocity), then the nodes of implicit bodies that have contacts, then nodes of clusters, then other nodes. In the
-/// columns by contact, rows of joints follow those of contacts; points of cables come last.
+/// A region that BodyOperator solves.
+/// - Velocity rows: two per rigid or implicit body (velocity, angular velocity), then the nodes of implicit bodies that
+///   have contacts, then nodes of clusters, then other nodes
+/// - Columns by contact: contacts, then rows of joints, then points of cables
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
     std::span<const Index> cable;  // indices of the cables that the region solves

@@ -1,6 +1,6 @@
-// Rows of cables, and of ties of the kind `ball`, in a region. A cable is solved in a region if its length is
-// prescribed or it has friction. Each of its points has three rows like a contact, and the law of the cable couples the
-// rows of all points (docs/methods/cables.md 2).
+// Rows of cables, and of ties of the kind `ball`, in a region (docs/methods/cables.md 2). A cable has rows if its
+// length is prescribed or it has friction. Each of its points has three rows like a contact, and the law of the cable
+// couples the rows of all points.
 #pragma once
 
 #include <span>

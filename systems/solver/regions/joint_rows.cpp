@@ -30,8 +30,8 @@ struct BodyMotion {
     Vec3 at_point() const { return velocity + turning(); }
 };
 
-/// Half of the acceleration of the joint error, in the frame of the second body, while both bodies move freely. h times
-/// this vector is the second-order part of the mean rate of the error in the step [m/s^2 or rad/s^2]
+/// Half of the acceleration of the joint error, in the frame of the second body, while both bodies move freely [m/s^2
+/// or rad/s^2]. Multiplied by h, it is the second-order part of the mean rate of the error in the step.
 Vec3 half_acceleration(bool rotational, const BodyMotion& first, const BodyMotion& second) {
     if (rotational) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
     const Vec3 first_acceleration = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
@@ -50,8 +50,8 @@ Real max_correction_speed(const RegionStage& stage, bool rotational, const BodyM
 
 /// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
 void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds) {
-    // Upper limit of (omega h)^2, with omega^2 = stiffness * mobility. Up to this limit, the spring force is evaluated
-    // at the start of the step alone, and its energy error stays bounded. Stiffer springs are evaluated partly at the
+    // Largest (omega h)^2, with omega^2 = stiffness * mobility, at which the spring force is evaluated only at the
+    // start of the step. Up to this limit its energy error stays bounded. Stiffer springs are evaluated partly at the
     // end of the step.
     constexpr Real at_start = 0.5;
     const JointPassiveRow& passive = axis.passive;

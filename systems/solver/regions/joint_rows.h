@@ -24,10 +24,12 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 /// The equation is solved with `first`; the block `leader` gets mobility 0, so sweeps skip it.
 void load_mimic(const LoadedJoint& first, const LoadedJoint& leader);
 
-/// Corrects the offset of a joint by one Newton step, so that the joint holds at the end of the step. The velocities of
-/// the region predict the position error at that time. Since the correction speed is bounded, a part of the present
-/// error may remain for later steps. The predicted error minus this part, divided by h, is added to the offset. Returns
-/// the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
+/// Corrects the offset of a joint by one Newton step, so that the joint holds at the end of the step. The change of the
+/// offset is (predicted - remaining) / h:
+/// - predicted: position error at the end of the step by the velocities of the region
+/// - remaining: part of the present error that the bounded correction speed leaves to later steps
+///
+/// Returns the squared mass-weighted norm of the change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const LoadedJoint& loaded);
 

@@ -49,8 +49,10 @@ struct LoadedRegion {
 };
 
 /// List of the nodes of a region and their velocities, in the order of their first appearance. RegionMemory::node_index
-/// stores the index of each node in the list. Regions of a step share no moving node, so their entries do not conflict.
-/// An entry left from an earlier step is recognised: at this index the list holds another node or none.
+/// stores the index of each node in the list.
+///
+/// Regions of a step share no moving node, so their entries do not conflict. An entry left from an earlier step is
+/// recognised: at this index the list holds another node or none.
 class NodeList {
 public:
     /// The list may use at most `room` entries of the columns by node, from `first` on.
@@ -88,10 +90,11 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Load: writes the contacts in the order of the traversal, and zero impulses. `load(position, number, contact)` fills
-/// a contact and returns the contact velocity without impulses; it may add nodes to the NodeList. `position`: index in
-/// the order of the traversal. `number`: index in region.row. Adds the sums over contacts to region.sums, which already
-/// contains those over joints and cables.
+/// Load: writes the contacts in the order of the traversal, and zero impulses. Adds the sums over contacts to
+/// region.sums, which already contains those over joints and cables.
+///
+/// `load(position, number, contact)` fills a contact and returns the contact velocity without impulses; it may add
+/// nodes to the NodeList. `position`: index in the order of the traversal. `number`: index in region.row.
 template <class Region, class Load>
 void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     RegionMemory& data = stage.memory;
@@ -132,10 +135,9 @@ template <class Region, RegionOperator Op>
 bool start_region(const RegionStage& stage, const Region& region, Op& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        // If the scale is zero, nothing moves, and zero impulses are the solution. The relative error of any other
-        // start would be infinite. With a fixed number of iterations, sweeps must not depend on how contacts are split
-        // into regions. So a region whose contacts all separate uses the warm start, too, as it would within a larger
-        // region.
+        // If the scale is zero, nothing moves: zero impulses are the solution, and any other start has an infinite
+        // relative error. Otherwise the warm start is used even if all contacts separate, because with a fixed number
+        // of iterations, sweeps must not depend on how contacts are split into regions.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region, op);
         return false;
     }

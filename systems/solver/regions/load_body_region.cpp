@@ -137,9 +137,9 @@ private:
         }
     }
 
-    /// Loads a point of a cable. LumpedContact::offset gets the velocity that no impulse changes: that of held nodes
-    /// plus CableBlockTable::velocity. `acts_at`: point at which impulses act on rigid and implicit bodies. If it is
-    /// null, they act at the nodes of the stencil.
+    /// Loads a point of a cable. `acts_at`: point at which impulses act on rigid and implicit bodies; if it is null,
+    /// they act at the nodes of the stencil. LumpedContact::offset gets the velocity that no impulse changes: that of
+    /// held nodes plus CableBlockTable::velocity.
     void load_point(std::size_t point, const Vec3* acts_at, LumpedContact& contact, RigidPart& part) {
         const RigidNodes& rigid = stage_.inputs.rigid.nodes;
         const Stencil& stencil = stage_.inputs.cables.stencil[point];

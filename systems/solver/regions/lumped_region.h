@@ -30,9 +30,8 @@ LumpedRegion<Traversal> lumped_region(const RegionStage& stage, std::span<const 
             .tolerance = tolerance_of(stage, row)};
 }
 
-/// Loads the contacts of a region. `numbering(k)` returns a function that maps a moving node of contact k to its row in
-/// the region. When the returned function returns a row, region.memory.velocity must already contain the velocity of
-/// this row.
+/// Loads the contacts of a region. `numbering(k)` returns a function from the moving nodes of contact k to their rows
+/// in the region. When this function returns a row, region.memory.velocity must already contain its velocity.
 template <RegionTraversal Traversal, class Numbering>
 void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Traversal>& region, Numbering&& numbering) {
     // The lane solver needs the contact velocities without impulses.

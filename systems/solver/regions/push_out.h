@@ -131,9 +131,9 @@ private:
         const Real least = rounding * largest_request_;
         const Real left = sweep_rows(std::max(region_.tolerance * region_.tolerance * requested, least), false);
         if (left == 0) return 0;
-        // Joints and ties can prevent a contact from being pushed apart, so that these sweeps do not converge. Joints
-        // and ties then take precedence: the last sweeps visit only them. Otherwise their positions would keep an
-        // error, and the next velocity solve would demand a motion that the contact forbids.
+        // Joints and ties can prevent contacts from being pushed apart, so that the sweeps do not converge. The last
+        // sweeps then visit only joints and ties: if their positions kept an error, the next velocity solve would
+        // demand a motion that the contacts forbid.
         return std::max(left, sweep_rows(least, true));
     }
 
@@ -206,11 +206,11 @@ private:
     Real largest_request_ = 0;  // largest sum of requested pushes so far (Requested::size) [J]
 };
 
-/// Finds frictionless pseudo velocities p, which move positions only. p_n: normal part of p. u_n: normal velocity of a
-/// contact after the velocity solve. Contacts that penetrate by more than the slop (push_slop) get u_n + p_n >=
-/// min(recovery |gap| / h, recovery_speed); push_speed limits the right-hand side further. At any other contact, the
-/// push may close the gap that remains after the velocity solve, but not more. The solution of the velocity solve must
-/// already be in `stage.out`. The result is in region.memory.scratch.
+/// Finds frictionless pseudo velocities, which move positions only (docs/methods/contact.md 3.4). The solution of the
+/// velocity solve must already be in `stage.out`. The result is in region.memory.scratch.
+/// - Contacts that penetrate by more than push_slop separate at least at push_speed, by velocity and pseudo velocity
+///   together.
+/// - At any other contact, the push may close the gap that remains after the velocity solve, but not more.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline PushOutcome solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);

@@ -10,13 +10,14 @@
 namespace skerry {
 namespace {
 
-/// Height of a point of a cylinder above the centre of the cylinder after a rotation, measured along `normal` [m]. The
-/// rotation tilts the axis from `axis` to `axis_then`. `point`: the point before the rotation, relative to the centre.
-/// If it is the lowest point of a rim, the contact moves around the rim as the cylinder tilts. The result is then the
-/// height of the point of the rim that is lowest after the rotation.
+/// Height of a point of a cylinder above its centre, measured along `normal`, after a rotation that tilts the axis from
+/// `axis` to `axis_then` [m]. `point`: the point before the rotation, relative to the centre.
+///
+/// For the lowest point of a rim, the result is the height of the point that is lowest after the rotation, because the
+/// contact moves around the rim as the cylinder tilts.
 Real height_after(const Vec3& point, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
-    // A point counts as the lowest of its rim if it is higher than the lowest one by at most `lowest` times the radius.
-    // Below the angle `least_tilt` between axis and normal [rad], many points of a rim would count as lowest, so
+    // `lowest`: a point counts as the lowest of its rim if it is higher than the lowest one by at most this fraction of
+    // the radius. `least_tilt`: below this angle between axis and normal [rad], many points of a rim would count, so
     // `point` itself is rotated.
     constexpr Real lowest = 1e-9, least_tilt = 1e-4;
     const Real height = axis.dot(point), radius = (point - height * axis).norm();

@@ -9,14 +9,13 @@
 
 namespace skerry {
 
-/// Parts of the split impulse that compensate rotation, and parts that hold joints.
+/// Parts of the split impulse that compensate the rotation of capsules and cylinders, and parts that hold joints.
 ///
-/// Contacts are solved for straight motion of their points, but points on the axis of a capsule or on the surface of a
-/// cylinder move on arcs. A spinning capsule that is pressed against a surface turns its end further towards the
-/// surface than the solver assumes. Without compensation, this loss of gap would use up part of the contact distance in
+/// Rotation: contacts are solved for straight motion of their points, but points on the axis of a capsule or on the
+/// surface of a cylinder move on arcs. Without compensation, the lost gap would use up part of the contact distance in
 /// each step (docs/methods/rigid_bodies.md 6.2).
 ///
-/// In joints, locked rows hold during the push, and axes stay within their limits for push and step together. The joint
+/// Joints: locked rows hold during the push, and axes stay within their limits for push and step together. The joint
 /// impulses of the push are stored in slot 0 of the workspace, which the method no longer needs.
 class PushedBodies {
 public:
@@ -27,9 +26,9 @@ public:
 
     /// True if the region has a capsule or a cylinder.
     bool any_rotation() const { return any_rotation_; }
-    /// Rate of change of the gap of contact i because the contact point moves on an arc instead of a straight line. The
-    /// body moves with its velocities and the pseudo velocities `push`. Negative if the gap shrinks by more than the
-    /// rounding error, otherwise 0 [m/s].
+    /// Rate of change of the gap of contact i because its point moves on an arc instead of a straight line [m/s].
+    /// Negative if the gap shrinks by more than the rounding error, otherwise 0. The body moves with its velocities and
+    /// the pseudo velocities `push`.
     Real loss(std::size_t i, std::span<const Vec4> push) const;
     /// Does one sweep over the joints. Returns the change of their impulses [J]
     SweepChange sweep_joints(std::span<Vec4> push) const;

@@ -5,9 +5,9 @@
 
 namespace skerry {
 
-/// Lists the clusters and rigid bodies that the contacts, joints and cables of each region touch, and finds the first
-/// node row of each region. All nodes of a touched cluster get rows, and a rigid body gets two rows. Returns the number
-/// of node rows of all regions.
+/// Lists the clusters and rigid bodies of each region (those that its contacts, joints and cables touch), and finds its
+/// first node row. All nodes of a touched cluster get rows, and a rigid body gets two rows. Returns the number of node
+/// rows of all regions.
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory);
 
 inline bool touches_cluster(const RegionMemory& memory, Index number) {

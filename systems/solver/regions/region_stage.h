@@ -61,13 +61,12 @@ PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
 /// of the contact and the velocities of its nodes [J].
 Real dissipated_by(const RegionStage& stage, Index row);
 
-/// Work against the forces of the step when nodes are displaced by h p, with the pseudo velocities p in memory.scratch
-/// [J]. Contact forces are not included. The work is accurate to first order in h p. `own_masses`: true if the region
-/// has neither clusters nor rigid bodies.
+/// Work against the forces of the step, without contact forces, when nodes are displaced by h p, with the pseudo
+/// velocities p in memory.scratch [J]. It is accurate to first order in h p. `own_masses`: true if the region has
+/// neither clusters nor rigid bodies.
 ///
-/// The force on a node, times h, is the change of momentum of the node minus its contact impulses. The momentum of a
-/// node of a cluster involves the coupled masses of all nodes of the cluster, so h times its force is read from
-/// RegionInputs::cluster_kick.
+/// The force on a node, times h, is its change of momentum minus its contact impulses. For a node of a cluster it is
+/// read from RegionInputs::cluster_kick, because the momentum involves the coupled masses of the whole cluster.
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry

@@ -7,10 +7,11 @@
 
 namespace skerry {
 
-/// True if the region is solved in its coloured order. Neither this answer nor the results depend on the number of
-/// workers. It is false for regions that touch clusters or need BodyOperator (needs_blocks). It is also false with a
-/// fixed number of iterations: the iterates of a group of contacts must then be the same in a small region and in a
-/// large one that contains the group.
+/// True if the region has enough contacts to be solved by a team of workers in its coloured order. Neither this answer
+/// nor the results depend on the number of workers. It is false
+/// - for regions that touch clusters or need BodyOperator (needs_blocks),
+/// - with a fixed number of iterations: a group of contacts must then have the same iterates alone and in a larger
+///   region.
 bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
 using RegionByColour = LumpedRegion<ByColour>;

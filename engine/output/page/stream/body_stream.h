@@ -20,9 +20,9 @@ inline constexpr std::size_t stress_field = 1, strain_field = 2, error_field = 3
 /// A lattice point: its three coordinates relative to the origin of the lattice, in lattice steps.
 using Code3 = std::array<std::int64_t, 3>;
 
-/// Lattice for the positions of a body. The origin is the lower corner of the bounding box of the surface in the first
-/// frame of the body. The largest extent of this box is divided into 2^14 steps. Rounding to the lattice moves a
-/// coordinate by at most half a step, which is 1/32768 of that extent.
+/// Lattice to which the positions of a body are rounded. Its origin is the lower corner of the bounding box of the
+/// surface in the first frame of the body. A step is 2^-14 of the largest extent of this box, so rounding moves a
+/// coordinate by at most 1/32768 of that extent.
 struct Lattice {
     static constexpr int steps = 1 << 14;
 
@@ -42,20 +42,25 @@ class BodyStream {
 public:
     explicit BodyStream(const BodyFrame& body);
 
-    /// Writes, in this order: the numbers of vertices and triangles; f64 origin[3] and step of the lattice [m]; for
-    /// each vertex the node number, as change from the previous vertex; for each triangle corner the vertex number, as
-    /// change from the previous corner.
+    /// Writes, in this order:
+    /// - numbers of vertices and triangles,
+    /// - f64 origin[3] and step of the lattice [m],
+    /// - for each vertex: the node number, as change from the previous vertex,
+    /// - for each triangle corner: the vertex number, as change from the previous corner.
     void put_shape(std::string& out) const;
     /// Writes the positions of all vertices axis by axis. Each number is a residual (lattice coordinate minus
-    /// prediction), written as change from the residual of the previous vertex. The prediction is 0 in the first frame,
-    /// the last coordinate in the second frame, and afterwards a linear extrapolation from the last two frames.
+    /// prediction), written as change from the residual of the previous vertex. The predictions are
+    /// - in the first frame: 0,
+    /// - in the second frame: the coordinate in the first frame,
+    /// - afterwards: a linear extrapolation from the last two frames.
     void put_positions(const BodyFrame& body, std::string& out);
     /// Writes the values of all vertices field by field. Each number is a residual (code minus prediction), written as
-    /// change from the residual of the previous vertex. The prediction of speed, stress and mesh error is the code of
-    /// the last frame, converted to the present scale. Strain is nearly proportional to stress. The prediction of its
-    /// code is therefore the code of the last frame plus r times the change of the stress code, rounded. The factor r
-    /// is the sum of all strain codes divided by the sum of all stress codes, both of the last frame, or 0 if the sum
-    /// of the stress codes is 0.
+    /// change from the residual of the previous vertex. The predictions use the codes of the last frame, converted to
+    /// the present scale:
+    /// - speed, stress, mesh error: the last code,
+    /// - strain: the last code plus r times the change of the stress code, rounded. The factor r is the ratio of strain
+    ///   to stress: sum of all strain codes divided by the sum of all stress codes of the last frame, or 0 if the
+    ///   latter is 0.
     void put_values(std::span<const std::vector<Real>> values, std::span<const ValueScale> scales, std::string& out);
 
     const std::vector<Index>& node() const { return node_; }

@@ -25,10 +25,12 @@ public:
     /// Writes the number of lines as a count. If it is not zero, writes further:
     /// 1. the exponent e of the scale of the forces, whose largest value is 4^e (ValueScale), encoded like a change;
     /// 2. in the first frame with lines: f64 origin[3] and step of the lattice on which points are encoded [m];
-    /// 3. for each line: its number and its number of points as counts; then x of all points, y of all points, z of all
-    /// points, and the forces at all points, each value as change from a reference. The reference is the value of this
-    /// point in the previous frame, if the line had the same number of points in that frame. Otherwise it is the value
-    /// of the preceding point of the line, and zero for the first point.
+    /// 3. for each line: its number and its number of points, as counts; then x of all points, y of all points, z of
+    ///    all points, and the forces at all points.
+    ///
+    /// Each value of 3. is written as change from a reference. If the line had the same number of points in the
+    /// previous frame, this is the value of the point in that frame. Otherwise it is the value of the preceding point
+    /// of the line, and zero for the first point.
     void put_frame(const Frame& frame, std::string& out);
 
     std::span<const PageLine> lines() const { return lines_; }

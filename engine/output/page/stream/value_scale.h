@@ -11,9 +11,10 @@
 namespace skerry {
 
 /// Scale for encoding values as integers: code = 2047 sqrt(value / top). `top` is a power of four that is at least as
-/// large as every value so far. The rounding error of a value is sqrt(value top) / 2047. The relative error is 0.5 %
-/// for value = top / 100 and 5 % for value = top / 10000, so a single large value costs small values little accuracy.
-/// If `top` grows by a factor of four, all codes halve, except for rounding to integers.
+/// large as every value so far. If it grows by a factor of four, all codes halve, except for rounding to integers.
+///
+/// The rounding error of a value is sqrt(value top) / 2047, that is 0.5 % for value = top / 100 and 5 % for
+/// value = top / 10000. A single large value therefore costs small values little accuracy.
 class ValueScale {
 public:
     static constexpr int last = 2047;
@@ -44,9 +45,9 @@ private:
 };
 
 /// Converts a code of a scale with `exponent_prev` to the code of the same value with the larger `exponent`. Each
-/// increase of the exponent by one halves the code. The shift is limited to 31, because larger shifts of an int are
-/// undefined.
+/// increase of the exponent by one halves the code.
 inline int shifted(int code, int exponent_prev, int exponent) {
+    // Larger shifts of an int than 31 are undefined.
     return code >> std::min(exponent - exponent_prev, 31);
 }
 

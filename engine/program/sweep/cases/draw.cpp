@@ -25,9 +25,9 @@ double natural_log(double x) {
         mantissa *= 2;
         --exponent;
     }
-    // For x = m 2^e (m: mantissa, e: exponent), log x = e log 2 + log m. For s = (m - 1) / (m + 1), log m = 2 artanh s
-    // = 2 s (1 + s^2/3 + s^4/5 + ...). Since m lies between sqrt(1/2) and sqrt(2), s^2 is at most 0.0295, and the last
-    // term of the sum is below 1e-19.
+    // The mantissa m and exponent e of x = m 2^e give log x = e log 2 + log m. With s = (m - 1) / (m + 1), the series
+    // is log m = 2 artanh s = 2 s (1 + s^2/3 + s^4/5 + ...). For m between sqrt(1/2) and sqrt(2), s^2 is at most
+    // 0.0295, and the last term of the sum is below 1e-19.
     const double s = (mantissa - 1) / (mantissa + 1), square = s * s;
     double sum = 0;
     for (int k = 25; k >= 1; k -= 2) sum = sum * square + 1.0 / k;

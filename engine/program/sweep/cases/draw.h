@@ -31,8 +31,8 @@ private:
 double spaced(double from, double to, int count, int index, Spacing spacing);
 
 /// Natural logarithm of a finite number above 0, and exponential function. Both use only basic arithmetic, so that the
-/// results are the same on every machine. The error of the logarithm is below 1e-15 times the larger of 1 and |log x|.
-/// The relative error of the exponential function is below 1e-15 times the larger of 1 and |x|.
+/// results are the same on every machine. The absolute error of log x is below 1e-15 max(1, |log x|), and the relative
+/// error of exp x is below 1e-15 max(1, |x|).
 double natural_log(double x);
 double exponential(double x);
 
