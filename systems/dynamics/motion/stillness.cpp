@@ -68,8 +68,7 @@ public:
             if (!first && furthest > limits::growth * least)
                 still_time = 0;
             else if (!first && (drift_grows || !is_balanced(half_time) || !keeps_shape(shape_grows)))
-                still_time =
-                    half_time;  // this half now counts as the first, with which the next half is compared
+                still_time = half_time;  // this half now counts as the first, with which the next half is compared
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = shape_grows ? shape_drift : 0;
             begin_half();

@@ -62,8 +62,8 @@ public:
           velocity_before_(region.memory.push_before),
           slop_(push_slop(stage.inputs.gravity, stage.h)) {}
 
-    /// Computes the pseudo velocities. `pressed`: true if some contact penetrates by more than the slop, the depth up to
-    /// which penetrations are not corrected.
+    /// Computes the pseudo velocities. `pressed`: true if some contact penetrates by more than the slop, the depth up
+    /// to which penetrations are not corrected.
     PushOutcome run(bool pressed) {
         clear();
         const Requested requested = request();
@@ -148,7 +148,8 @@ private:
         for (Index iteration = 1;; ++iteration) {
             const bool accelerated = iteration > plain_sweeps && !only_equations;
             const SweepChange change = sweep_once(only_equations, accelerated);
-            if (change.squared_change == 0 || (change.squared_change <= small && !stage_.settings.fixed_iterations)) return 0;
+            if (change.squared_change == 0 || (change.squared_change <= small && !stage_.settings.fixed_iterations))
+                return 0;
             if (iteration >= stage_.settings.max_iterations) return change.squared_change;
             if (accelerated)
                 extrapolate(acceleration.next(change, false));
