@@ -60,7 +60,7 @@ void hold_some(StiffBody& stiff) {
 void begin_step(StiffBody& stiff, const std::vector<Vec3>& displacement, const std::vector<Vec3>& velocity) {
     LargeStep& step = stiff.large_step;
     step.resize(stiff.size());
-    step.carried = displacement;
+    step.unmoved_displacement = displacement;
     step.velocity = velocity;
     for (std::size_t k = 0; k < stiff.size(); ++k) step.impulse[k] = stiff.mass(k) * velocity[k];
 }
@@ -254,7 +254,7 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     CHECK(step.counts.factors <= step.counts.steps + 1);
     // residual of the equation, multiplied by A^-1, relative to the whole kick
     std::vector<Vec3> left(stiff.size()), at_end(stiff.size()), force(stiff.size());
-    for (std::size_t k = 0; k < stiff.size(); ++k) at_end[k] = step.carried[k] + within * step.velocity[k];
+    for (std::size_t k = 0; k < stiff.size(); ++k) at_end[k] = step.unmoved_displacement[k] + within * step.velocity[k];
     stiff.elements().forces(at_end, force);
     if (!held) {  // the centrifugal force is the slope of the spin's energy
         BodyShape shape;
