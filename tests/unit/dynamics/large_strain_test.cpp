@@ -60,7 +60,7 @@ void hold_some(StiffBody& stiff) {
 void begin_step(StiffBody& stiff, const std::vector<Vec3>& displacement, const std::vector<Vec3>& velocity) {
     LargeStep& step = stiff.large_step;
     step.resize(stiff.size());
-    step.carried = displacement;
+    step.unmoved_displacement = displacement;
     step.velocity = velocity;
     for (std::size_t k = 0; k < stiff.size(); ++k) step.impulse[k] = stiff.mass(k) * velocity[k];
 }
@@ -240,21 +240,22 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     if (held)
         for (std::size_t k = 0; k < stiff.size(); ++k)
             if (stiff.holds(k)) velocity[k].setZero();
-    constexpr Real within = 0.01;
+    constexpr Real theta_h = 0.01;
     begin_step(stiff, bent(stiff, body, noise), velocity);
     if (!held) {
         stiff.set_shape(stiff.large_step.unmoved_displacement);
         stiff.remove_momenta(stiff.large_step.velocity);
         stiff.large_step.angular_momentum = stiff.shape().inertia() * Vec3(2, -4, 6);
     }
-    REQUIRE(solve_large_step(1, within, stiff));
+    REQUIRE(solve_large_step(1, theta_h, stiff));
     const LargeStep& step = stiff.large_step;
     CHECK(step.counts.steps > 1);
     CHECK(step.counts.factors >= 1);
     CHECK(step.counts.factors <= step.counts.steps + 1);
     // residual of the equation, multiplied by A^-1, relative to the whole kick
     std::vector<Vec3> left(stiff.size()), at_end(stiff.size()), force(stiff.size());
-    for (std::size_t k = 0; k < stiff.size(); ++k) at_end[k] = step.carried[k] + within * step.velocity[k];
+    for (std::size_t k = 0; k < stiff.size(); ++k)
+        at_end[k] = step.unmoved_displacement[k] + theta_h * step.velocity[k];
     stiff.elements().forces(at_end, force);
     if (!held) {  // the centrifugal force is the slope of the spin's energy
         BodyShape shape;
@@ -274,7 +275,7 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     }
     Real kick = 0, missing = 0;
     for (std::size_t k = 0; k < stiff.size(); ++k)
-        left[k] = stiff.mass(k) * step.velocity[k] + within * force[k] - step.impulse[k];
+        left[k] = stiff.mass(k) * step.velocity[k] + theta_h * force[k] - step.impulse[k];
     stiff.respond(left);
     for (std::size_t k = 0; k < stiff.size(); ++k) {
         if (stiff.holds(k)) {
