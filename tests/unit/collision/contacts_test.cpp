@@ -188,7 +188,7 @@ TEST_CASE("surfaces that touch exactly, without a contact distance, are in conta
     }
 }
 
-TEST_CASE("a ball on a plane touches it below, with the plane's velocity at midstep and the combined surface", "[unit]") {
+TEST_CASE("a ball on a plane touches it below, with the plane's midstep velocity and the combined surface", "[unit]") {
     CollisionWorld w;
     const Index ball = w.add_solid(test::ball_mesh(1, 4), w.at({0, 0, 1.01}), 0.02, {0.9, 0.4, 0.1});
     const Index plane = w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
