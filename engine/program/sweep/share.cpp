@@ -60,8 +60,9 @@ Share array_share(const Variables& variables) {
     const int step = variables.number("SLURM_ARRAY_TASK_STEP").value_or(1);
     if (*id < least || step < 1 || (*id - least) % step != 0 || (*id - least) / step >= *count)
         refuse("SLURM_ARRAY_TASK_ID", {},
-               std::to_string(*id) + " of " + std::to_string(*count) + " jobs that are numbered from " +
-                   std::to_string(least) + " with an increment of " + std::to_string(step),
+               "job " + std::to_string(*id) + " in an array of " + std::to_string(*count) +
+                   " jobs, of which the first is job " + std::to_string(least) + " and the numbers increase by " +
+                   std::to_string(step),
                "a job number of an array without gaps, such as --array=0-63", by_hand);
     return {(*id - least) / step, *count, "SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT", {}};
 }
