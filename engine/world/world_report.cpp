@@ -121,7 +121,8 @@ std::string WorldReport::distrust() const {
                                        : "a contact region of " + std::to_string(worst_region) + " contacts";
         return region + " was left unsolved with a relative error of " + short_text(worst_error) + ", more than " +
                short_text(largest_trusted_error) +
-               ", so positions, forces and energies cannot be trusted; increase max_iterations, or reduce the load on the bodies";
+               ", so positions, forces and energies cannot be trusted; increase max_iterations, or reduce the load on "
+               "the bodies";
     }
     return {};
 }
