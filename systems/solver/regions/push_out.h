@@ -1,4 +1,5 @@
-// Split impulse of a region: separates penetrating contacts without adding energy (docs/methods/contact.md 3.4).
+// Split impulse (push-out) of a region: separates penetrating contacts without adding energy, by pseudo velocities that
+// move nodes in this step only (docs/methods/contact.md 3.4).
 #pragma once
 
 #include <algorithm>
@@ -137,12 +138,13 @@ private:
     const Real slop_;
 };
 
-/// Finds frictionless pseudo velocities, which move positions only (docs/methods/contact.md 3.4). The solution of the
-/// velocity solve must already be in `stage.out`. The result is in region.memory.scratch. Returns false if no contact
-/// is pushed.
-/// - Contacts that penetrate by more than push_slop separate at least at push_speed, by velocity and pseudo velocity
-///   together.
-/// - At any other contact, the push may close the gap that remains after the velocity solve, but not more.
+/// Pushes penetrating bodies apart by a split impulse without friction (docs/methods/contact.md 3.4): finds pseudo
+/// velocities, which move positions only. The solution of the velocity solve must already be in `stage.out`. The result
+/// is in region.memory.scratch. Returns false if no contact is pushed.
+///
+/// Each contact has a normal velocity u_n, given by the velocity solve, and a normal pseudo velocity p_n:
+/// - If the bodies penetrate by more than push_slop(), u_n + p_n must be at least push_speed().
+/// - Otherwise p_n may be negative and close the gap that is left after the motion with u_n, but not more.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);
