@@ -12,7 +12,9 @@ namespace skerry {
 
 /// Differences of row indices: row of a body minus the corresponding row of an earlier body with the same mesh.
 struct RowOffsets {
-    Index nodes, elements;  // `nodes`: rows of NodeTable; `elements`: numbers of tetrahedra in TetrahedronBlockTable
+    // `nodes`: offset of rows of NodeTable. `elements`: offset of the indices that tetrahedra have in
+    // TetrahedronBlockTable.
+    Index nodes, elements;
     Index triangles = 0, edges = 0, vertices = 0;
 };
 

@@ -1,5 +1,6 @@
-// Type descriptions of the rows of columns, for code that saves, loads, hashes, resizes or erases rows of any type. The
-// specialisation of NumbersOf or MembersOf for a struct stored in tables follows the definition of the struct.
+// Descriptions of the types of rows that columns store: numbers of one type, or a struct with its members. Code that
+// saves, loads, hashes, resizes or erases rows uses these descriptions, so it works for rows of any type. The
+// specialisation of NumbersOf or MembersOf for a struct follows the definition of the struct.
 #pragma once
 
 #include <array>

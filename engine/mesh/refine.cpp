@@ -27,8 +27,9 @@ std::array<Index, 3> picked(const std::array<Index, N>& corners, const std::arra
     return {corners[position[0]], corners[position[1]], corners[position[2]]};
 }
 
-/// Finds the midpoints of edges that belong to a set of nodes after a refinement. With these midpoints the set covers
-/// the same faces and edges as before.
+/// Finds the new nodes that a set of nodes gains when the mesh is refined. The new nodes are the midpoints of edges. If
+/// all corners of a face are in the set, so are all nodes of the smaller faces into which the refinement divides it.
+/// add_edge() tells which edges outside of such faces also give their midpoints to the set.
 class MidpointMarks {
 public:
     MidpointMarks(std::size_t node_count, const std::vector<Index>& nodes) : in_set_(node_count), on_face_(node_count) {

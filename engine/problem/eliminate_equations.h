@@ -35,16 +35,18 @@ struct StepEquations {
 ///   that they have after the step.
 /// - Slides, cables, and motors, limits and passive forces of joint axes keep their impulses of the step.
 ///
-/// The result follows from blocks of the Delassus operator, which maps impulses to velocity changes:
-/// - C: contacts and eliminated rows,
-/// - E: eliminated rows with each other,
-/// - G: contacts and all rows.
+/// The contact impulses of the step are r*, the impulses of all rows in the step are s*. Blocks of the Delassus
+/// operator, which maps impulses to velocity changes, give the change by other contact impulses r:
+/// - C: changes at contacts by eliminated rows,
+/// - E: changes at eliminated rows by each other,
+/// - G: changes at contacts by all rows.
 ///
-/// With the contact impulses r* and the impulses s* of all rows in the step,
+/// The impulses of the eliminated rows change by -E^-1 C^T (r - r*), which keeps the velocities of these rows. So
 ///
 ///     W' = W - C E^-1 C^T,     q' = q + G s* + C E^-1 C^T r*.
 ///
-/// If r* solved the problem of the step, it also solves the new one.
+/// The contact velocities W' r* + q' = W r* + q + G s* are those of the step. So r* solves the new problem if it solved
+/// the problem of the step.
 ///
 /// - `contact`: for each contact of the problem, its row in `inputs`.
 /// - `impulse`: r*, in the contact frames.

@@ -8,13 +8,11 @@
 namespace skerry {
 
 /// Returns one hash of all columns with the role `state` or `link` (ColumnRole), of the clock and of gravity. It serves
-/// to test whether two worlds have equal states.
-///
-/// The hash does not depend on the rows in which tables store an object. Therefore bodies, materials, colliders,
-/// attachments and joints are hashed one by one, in the order of the slots of their handles. Row numbers of nodes and
-/// elements are counted from the first row of the body. Of the stored pairs of objects, only overlapping ones are
-/// hashed, because a search finds all others again. Settings that cannot change later are not hashed, so that worlds
-/// with different numbers of threads can be compared.
+/// to test whether two worlds have equal states. The hash does not depend on
+/// - the rows in which tables store an object: objects are hashed in the order of the slots of their handles, and row
+///   numbers of nodes and elements are counted from the first row of the body;
+/// - stored pairs of objects that do not overlap: a search finds them again;
+/// - settings that cannot change later: worlds with different numbers of threads can be compared.
 std::uint64_t state_hash(WorldState& world);
 
 /// Returns the hash of one body with its nodes and elements. `body`: row of BodyTable.

@@ -15,7 +15,7 @@ struct Tuning {
     // changes F by more is repeated with a shorter length.
     Real max_strain_step = 0.2;
     Real restitution_speed = 0.05;  // impacts slower than this do not rebound, >= 0 [m/s]
-    // If this value is above 0, a body counts as still when all of its nodes are slower [m/s], and bodies can sleep
+    // A body counts as still if all of its nodes are slower than this [m/s]. If the value is above 0, bodies can sleep
     // even if Settings::sleep is false. If it is 0, the engine uses its own criterion, and bodies sleep only if
     // Settings::sleep is true.
     Real sleep_speed = 0;

@@ -363,8 +363,8 @@ void validate(const Motion& motion, const Vec3& pivot) {
 namespace {
 
 /// Checks that the first key of a plane's motion agrees with the point and the normal of the plane, unless these have
-/// their default values. Keys are poses of the plane, and not displacements from the given point. A user who confuses
-/// the two would otherwise get a plane in the wrong place.
+/// their default values. Keys are poses of the plane, not displacements from the point. If the user confuses them, the
+/// plane would be in the wrong place.
 void require_keys_of_plane(const Plane& plane, const ColliderSettings& collider, const std::string& object) {
     if (collider.motion.keys.empty()) return;
     constexpr Real same =

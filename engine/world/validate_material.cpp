@@ -77,9 +77,9 @@ void validate(const MaterialSettings& material) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
-    // Young's modulus and density may be any positive numbers, if the wave speed that they give is not above the speed
-    // of light. Other values may give a stable step of 0, or one too short to advance the time. Without this check that
-    // error would appear only when a body is added or in the first step.
+    // Young's modulus and density may be any positive numbers that give a wave speed below the speed of light. Others
+    // may give a stable step of 0, or one too short to advance the time. That error would otherwise appear only when a
+    // body is added or in the first step.
     constexpr Real speed_of_light = 299792458;  // m/s
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))

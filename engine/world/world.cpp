@@ -268,9 +268,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     return handle;
 }
 
-/// Reconsiders the dynamics of implicit bodies after the body `added` was added. If this body requires short steps
-/// anyway, explicit steps may now cost less computing time for an implicit body. Such bodies become explicit, if the
-/// user has left the choice of their dynamics to the engine.
+/// Makes implicit bodies explicit if explicit steps cost less computing time, because the added body `added` requires
+/// short steps anyway. Concerns only bodies for which the user has left the choice to the engine.
 void revise_choices(World& world, WorldState& state, BodyHandle added) {
     Model& model = state.model;
     if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
@@ -331,9 +330,9 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 namespace {
 
-/// Must be called for an object that is removed. HeldDepth describes the deepest overlap of surfaces whose motion is
-/// prescribed. If the removed object belongs to this pair of surfaces, HeldDepth::pair is reset: a new object may get
-/// the same slot, and would be reported by mistake. The stored depth remains.
+/// Must be called for an object that is removed. Resets HeldDepth::pair, the pair of surfaces with prescribed motion
+/// that overlap deepest, if the object belongs to it. Otherwise a new object with the same slot would be reported by
+/// mistake. The stored depth remains.
 void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
     const PairSlots pair = slots_of_pair(held.pair);
     if (is_collider ? pair.is_collider && pair.second == slot

@@ -39,9 +39,9 @@ Energy energy_of(const Model& model, Real time, Real dissipated) {
 
 namespace {
 
-/// Counts the elements of a body whose volume ratio det F is below 0.2. Does nothing if the body has no smoothed
-/// elements. A smoothed element has the mean deformation gradient F of several tetrahedra. If these are compressed
-/// against each other, det F can be this small although no tetrahedron is compressed this much.
+/// Counts the elements of a body whose volume ratio det F is below 0.2, if it has smoothed elements. These have the
+/// mean deformation gradient F of several tetrahedra. If tetrahedra are compressed against each other, det F can be
+/// this small although none is compressed this much.
 void count_compressed_elements(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real compressed = 0.2;
     const Range blocks = model.bodies.blocks[body];
@@ -59,9 +59,9 @@ void count_compressed_elements(const Model& model, std::size_t body, WorldReport
     report.folded += ratios.near_inversion;
 }
 
-/// Elastic energy that rounding errors can cause [J]: that of the strain which the rounding of positions can cause in
-/// ten thousand steps. It is a lower limit for the energy by which the report divides the energy error. Bodies at rest
-/// without weight need this limit: they exchange no energy with which the error could be compared.
+/// Elastic energy that rounding errors can cause [J]: that of the strain which rounding of the positions can cause in
+/// ten thousand steps. It is the least energy by which the report divides the energy error. Bodies at rest without
+/// weight need it, because they exchange no energy.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;

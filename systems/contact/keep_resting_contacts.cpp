@@ -52,7 +52,9 @@ private:
     const RestingInputs& inputs_;
 };
 
-/// Fills RestingMemory::source: for each row of the new table of stored contacts, the row from which it is copied.
+/// Fills RestingMemory::source, which lists the rows to copy into the new table of stored contacts. An entry r >= 0 is
+/// row r of `kept`, the contacts stored so far. An entry ~c (negative) is row c of `contacts`, the contacts of this
+/// step.
 void list_sources(const ContactTable& contacts, const RestingPairs& pairs, const RestingContactTable& kept,
                   Column<Index>& source) {
     source.clear();

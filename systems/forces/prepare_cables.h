@@ -57,7 +57,8 @@ struct CableInputs {
     bool moves(std::size_t cable) const;
 };
 
-/// Start `t`, length `h` and force interval `kick` of a step [s], and the recovery speed of the cables.
+/// Times of a step, and the recovery speed of the cables. `t`: start of the step [s]. `h`: its length [s]. `kick`: time
+/// for which forces act in the step [s].
 struct CableTimes {
     Real t = 0, h = 0, kick = 0;
     Real recovery_speed = 0;  // upper limit of the speed at which a too long cable is shortened [m/s]

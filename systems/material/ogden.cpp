@@ -53,8 +53,9 @@ struct PrincipalShape {
 
     /// Quantities of one term of the law for each axis, with the stretch s_i, the exponent a and x_i = s_i / J^(1/3):
     /// - `power`: x_i^a
-    /// - `over_exponent`: derivative of the term by log x_i, divided by the modulus of the term: `power` / a, or log
-    ///   x_i if a = 0
+    /// - `over_exponent`: derivative of the term by log x_i, divided by the modulus 2 mu c_p of the term (ogden.h). It
+    ///   is x_i^a / a. If a = 0, it is log x_i, the limit of (x_i^a - 1) / a: numbers equal on all axes, such as -1/a,
+    ///   cancel in the stress.
     struct Powers {
         Three<T> power, over_exponent;
     };

@@ -20,7 +20,9 @@ Mat3 cofactor_of(const Mat3& F) {
 
 Real StableNeoHookean::energy_density(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
-    const Mat3 e = F - Mat3::Identity();  // e = F - I, as in energy_density for lanes
+    // Computes the energy from e = F - I without the first-order terms, which cancel. With these terms a body in its
+    // rest shape would have the energy of their rounding errors.
+    const Mat3 e = F - Mat3::Identity();
     const Real trace = e.trace(), bulk = (trace * trace - e.cwiseProduct(e.transpose()).sum()) / 2 + e.determinant();
     const Real growth = trace + bulk, quarter = (2 * trace + e.squaredNorm()) / 4;
     return mu * (0.375 * e.squaredNorm() - 0.75 * bulk - 0.5 * (std::log1p(quarter) - quarter)) +

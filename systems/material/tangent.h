@@ -11,10 +11,13 @@ namespace skerry {
 /// Derivative dP/dF of the stress P in the principal axes of F = left diag(s) right^T, with negative eigenvalues
 /// replaced by 0 (Stomakhin, Howes, Schroeder, Teran 2012; Smith, de Goes, Kim 2018) [Pa].
 ///
-/// A change X of F has the components X' = left^T X right in these axes. It changes these components of the stress:
-/// - diagonal: by `normal` times the vector of all X'_ii
-/// - entry ij with i != j: by (flip + twist)/2 X'_ij + (flip - twist)/2 X'_ji, with entry k of `flip` and `twist` for
-///   the axis k other than i and j
+/// A change X of F has the components X' = left^T X right in these axes. The stress changes by left Y' right^T, with
+/// - diagonal: vector of the three Y'_ii = `normal` times the vector of the three X'_ii
+/// - symmetric part, i != j: Y'_ij + Y'_ji = flip_k (X'_ij + X'_ji)
+/// - antisymmetric part, i != j: Y'_ij - Y'_ji = twist_k (X'_ij - X'_ji)
+///
+/// Here k is the third axis, neither i nor j. So flip_k and twist_k are stiffnesses for changes in the plane of the
+/// axes i and j.
 struct Tangent {
     Mat3 left, right;
     Mat3 normal;

@@ -268,7 +268,9 @@ void compare_shells(SurfaceReport& report) {
         return report.shells[static_cast<std::size_t>(shell)].volume > 0 ? 1 : -1;
     };
     for (const auto& [key, group] : surrounded) {
-        int volumes = sign_of(key.first);  // number of solids that contain the points behind the triangles, minus voids
+        // Number of solids minus number of voids at the points just inside these triangles. `key`: the shell of the
+        // triangles, and all other shells that contain these points. Shells of negative volume bound voids.
+        int volumes = sign_of(key.first);
         for (const Index other : key.second) volumes += sign_of(other);
         if (volumes > 1 || (volumes < 0 && !key.second.empty()))
             add_fault(report, SurfaceFaultKind::doubled_volumes, group.first).count += group.count - 1;

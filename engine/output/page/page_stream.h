@@ -1,4 +1,4 @@
-// Encoder of the frames that a page plays, recorded or live.
+// Encoder of the frames of a run for the HTML page that plays them in a browser, recorded or live.
 #pragma once
 
 #include <array>

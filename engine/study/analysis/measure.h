@@ -61,12 +61,12 @@ std::vector<Real> column_sizes(const StudyRun& run);
 ///   agreement_share.
 std::vector<Real> column_scales(const StudyFamily& family);
 
-/// Returns the figures of a column for which the study reports an error bar. `agree_until` and `scale` belong to the
-/// column.
+/// Returns the figures of a column (see StudyFigure) for which the study reports an error bar. `agree_until`: time up
+/// to which perturbed runs agree on the column (agreement.h) [s]. `scale`: entry of column_scales() for the column.
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);
 
-/// Measures a figure of a column. `scale` and `agree_until` belong to the column, `wanted_error` is the wanted relative
-/// error.
+/// Measures a figure of a column. `scale` and `agree_until` are those of figures_of(), `wanted_error` is the wanted
+/// relative error.
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
                          Real agree_until, Real wanted_error);
 

@@ -90,9 +90,9 @@ bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const V
     return true;
 }
 
-/// Moves an object from its present pose to each of the poses `poses` in turn, with constant velocities between them.
-/// Keeps the script if the object already rests at the last pose, or if its script already moves it to this pose by the
-/// same time.
+/// Gives an object a script that moves it from its present pose to each of the poses `poses` in turn, with constant
+/// velocities between them. Keeps the present script if the object already rests at the last pose or is on its way
+/// there.
 template <class Table>
 void follow(const Scripted<Table>& scripted, std::span<const Keyframe> poses, Real now) {
     const RigidPose present = scripted.pose(now);
@@ -102,6 +102,7 @@ void follow(const Scripted<Table>& scripted, std::span<const Keyframe> poses, Re
                               ? !(now < scripted.keys().back().time)
                               : script.velocity == Vec3::Zero() && script.angular_velocity == Vec3::Zero();
     if (is_still && is_at(present, end)) return;
+    // the present script may already move the object to the last pose by the same time
     const bool has_target = scripted.keys().size() == poses.size() + 1;
     if (has_target && scripted.keys().back().time == poses.back().time && scripted.keys().front().time <= now &&
         is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, end))
@@ -143,10 +144,10 @@ void for_each_script(Model& model, Index collider, auto&& change) {
         change(Scripted{model.attachments, static_cast<std::size_t>(a)});
 }
 
-/// Positions of all nodes of a body after one of its attachments was moved from the pose `old_pose` to `pose`. If this
-/// attachment holds the rotating frame of an implicit body (find_holding_attachments), the free nodes of the body move
-/// rigidly with the attachment. Nodes that the attachment holds in some directions move in these directions only. Nodes
-/// that other attachments hold completely do not move.
+/// Positions of all nodes of a body after one of its attachments was moved from the pose `old_pose` to `pose`:
+/// - Nodes that the attachment holds move with it. If it holds them in some directions only, they move in these only.
+/// - Nodes that no attachment holds completely move rigidly with it if it holds the rotating frame of an implicit body.
+/// - All other nodes stay.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& old_pose,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;

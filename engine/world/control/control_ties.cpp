@@ -157,9 +157,8 @@ std::vector<Vec3> tied_points(const Model& model, const TiedObjects& objects, co
     return points;
 }
 
-/// Throws SceneError if the object to which the body is tied has no surface, or if the distance of a tied point from
-/// this surface exceeds the mean edge length of the tied body. The point of a ball tie to an object that does not
-/// deform may be anywhere.
+/// Throws SceneError if a tied point is farther from the surface of the object to which it is tied than the mean edge
+/// length of the tied body, or if this object has no surface. Ball ties to objects that do not deform have no limit.
 void require_close(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
                    const TieSettings& tie, std::span<const Vec3> points) {
     const Model& model = world.model;
@@ -197,9 +196,9 @@ void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& r
     table.broken.push_back(infinity);
 }
 
-/// Appends a tied node. `point`: point of the node that is tied, see tied_points() [m]. If the node is tied to a
-/// deformable body, TieTable::place gets an offset from the nearest surface point of this body. Otherwise it gets a
-/// position in the frame of the rigid body or collider, or in the world.
+/// Appends a tied node to TieTable. Its `place` is an offset from the nearest surface point if the other object
+/// deforms, otherwise a position in the frame of the object (frame_of). `point`: point that is tied, see tied_points()
+/// [m].
 void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
               Index node, const Vec3& point) {
     Model& model = world.model;

@@ -242,10 +242,9 @@ private:
         for (const BodyBalance& balance : bodies_) largest_ = std::max(largest_, balance.out_of_balance);
     }
 
-    /// Returns true if all bodies are in balance and slow, and reports the body with the largest residual. F:
-    /// BodyBalance::forces of a body, or `largest_` if neither weight, loads nor contacts act on it [N]. A body is in
-    /// balance if its residual, the out-of-balance force divided by F, is at most the tolerance. It is slow if its
-    /// momentum is at most tolerance * F * `time`. `time`: time for which all bodies have been in balance [s].
+    /// Returns true if all bodies are in equilibrium (docs/methods/loads.md 3). Reports the body with the largest
+    /// residual: the out-of-balance force divided by the forces on the body. `time`: time for which all bodies have
+    /// been in balance [s].
     bool find_worst(Real time, RelaxReport& report) const {
         report.residual = report.speed = 0;
         report.worst.reset();
@@ -253,6 +252,7 @@ private:
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             if (!moves(b)) continue;
             const BodyBalance& balance = bodies_[b];
+            // without weight, loads and contacts, the body is compared with the largest out-of-balance force
             const Real scale = balance.forces > 0 ? balance.forces : largest_;
             const Real residual = scale > 0 ? balance.out_of_balance / scale : 0;
             in_balance &= residual <= settings_.tolerance && balance.momentum <= settings_.tolerance * scale * time;

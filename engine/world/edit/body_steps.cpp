@@ -21,9 +21,9 @@ namespace skerry {
 
 namespace {
 
-/// Speed of longitudinal waves in a thin bar, sqrt(E / rho), with Young's modulus E and density rho [m/s]. For several
-/// materials, rho is the mean density. E is the geometric mean of the Voigt bound (materials in parallel) and the Reuss
-/// bound (materials in series).
+/// Speed of longitudinal waves in a thin bar of the materials of a body: sqrt(E / rho) [m/s]. rho is the mean density.
+/// Young's modulus E is the geometric mean of the Voigt bound (materials in parallel) and the Reuss bound (materials in
+/// series).
 Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
     Real volume = 0, mass = 0, stiffness = 0, compliance = 0;
     for (const MaterialZone& zone : zones) {
@@ -110,9 +110,9 @@ MassProperties mass_of_shape(const Model& model, const NewBody& body) {
         const Vec3 center = (body.nodes[0] + body.nodes[static_cast<std::size_t>(body.core_nodes) - 1]) / 2;
         return {ball + shaft, center, {across, across, axial}, Mat3::Identity()};
     }
-    // Integrals over the inside of a closed surface are sums over the tetrahedra that a fixed point, here the first
-    // node, forms with the triangles (divergence theorem). A tetrahedron has a negative volume if the outer side of its
-    // triangle faces this point.
+    // A closed surface is divided into tetrahedra, which its first node forms with the triangles. If the outer side of
+    // a triangle faces this node, the volume is negative. So sums over the tetrahedra are integrals over the inside
+    // (divergence theorem).
     std::vector<std::array<Index, 4>> fan;
     for (const auto& [a, b, c] : body.triangles) fan.push_back({0, a, b, c});
     const std::span<const std::array<Index, 4>> tetrahedra = fan.empty() ? body.tetrahedra : fan;
@@ -192,15 +192,14 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // Mass forms (mass_forms.h) divide the node masses among the elements, to lengthen the stable step. The sum of the
-    // forms must not exceed the node masses. In a large body this is verified for groups of elements instead of the
-    // whole body. The forms then lengthen the stable step less, or not at all, and are dropped if they do not lengthen
-    // it.
+    // Mass forms divide the node masses among the elements, to lengthen the stable step (docs/methods/stable_step.md
+    // 2.3). In a large body, their sum is bounded for groups of elements instead of the whole body, so they may gain
+    // nothing. Forms without gain are dropped.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
-    // Frame masses (mass shares for a body that rotates as a whole, frame_masses.h) are chosen for linear elements
-    // only. The mass forms of smoothed elements already allow steps near the stability limit. With longer steps, the
-    // energies of the highest frequencies would be less accurate.
+    // Frame masses (docs/methods/stable_step.md 2.4) are chosen for linear elements only. The mass forms of smoothed
+    // elements already allow steps near the stability limit. Longer steps would make the energies of the highest
+    // frequencies less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     // A body that yields gets no frame masses either, because frame masses are not updated after plastic flow.
     const auto b = static_cast<std::size_t>(row);

@@ -17,12 +17,11 @@ constexpr Real ns = 1e-9;  // one nanosecond in seconds; the costs below are in 
 // the output of profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // step_time [ns]
-// Fraction of step_time that is spent on contacts (measured for a cube on a face: a half or more). An implicit body may
-// take longer steps than other bodies, but its contacts are solved in each of the shorter steps of the world. So this
-// part of the cost arises in every step of the world.
+// Share of step_time that contacts take (measured for a cube on a face: a half or more). Contacts are solved in each
+// step of the world, even if the implicit body itself takes longer steps.
 constexpr Real contact_share = 0.5;
-// Cost of the contacts of an implicit body in a pile, divided by the cost of the contacts of a cube on a face. In piles
-// of 27 cubes of 27 to 729 nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
+// Cost of the contacts of an implicit body in a pile, divided by that of a cube on a face. Measured: 26 to 57, in piles
+// of 27 cubes (27 to 729 nodes) and of 27 balls, with steps of 1 to 8 ms.
 constexpr Real pile_contacts = 40;
 // Cost of the contacts of an explicit body in the same piles, per step and node [ns].
 constexpr Real node_contacts = 200;
@@ -37,15 +36,15 @@ constexpr Real least_saving = 2;
 constexpr Real most_strain = 0.02;  // largest strain for which linear elasticity is valid
 constexpr Real fall = 10;           // assumed height of a fall, divided by the size of the body
 
-/// Largest strain expected in the materials of a body, under its own weight or in an impact. The impact strain is v/c,
-/// as in a bar that is stopped, with the wave speed c and the impact speed v = sqrt(u^2 + 2 g H). Here u is the initial
-/// speed, and H the height of a fall. In a world without gravity nothing is known about later speeds, so g is the
-/// default gravity.
+/// Largest strain expected in the materials of a body, under its own weight or in an impact
+/// (docs/methods/implicit_bodies.md 6). The impact follows a fall through `fall` times the size of the body, which
+/// begins with the initial speed.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
     const Vec3 default_gravity = Settings{}.gravity;
     const Real size = (upper - lower).maxCoeff();
+    // without gravity nothing is known about later speeds, so the default gravity is used
     const Real gravity = (model.settings.gravity == Vec3::Zero() ? default_gravity : model.settings.gravity).norm();
     const Real moves = body.velocity.norm() + body.angular_velocity.norm() * size / 2;
     const Real speed = std::sqrt(moves * moves + 2 * gravity * fall * size);
@@ -54,6 +53,7 @@ Real largest_strain(const Model& model, const NewBody& body) {
         const auto material = static_cast<std::size_t>(body.material_of(t));
         const Real modulus = model.materials.young_modulus[material];
         const Real density = model.materials.constants[material].density;
+        // strain under weight, and strain v/c of a bar that is stopped at the speed v, with the wave speed c
         strain = std::max({strain, density * gravity * size / modulus, speed * std::sqrt(density / modulus)});
     }
     return strain;
@@ -161,9 +161,9 @@ Index outdated_choice(const Model& model, DynamicsEstimate& updated) {
         updated.implicit_step = step;
         updated.deforming_step = std::max(step, model.settings.implicit_step);
         updated.explicit_step = std::min(old.explicit_step, step);
-        // The costs in `old` already include the bodies that existed at the first estimate, so `cost_of_all` counts
-        // these bodies twice. Both new costs are thus too large, the explicit cost by more, because the explicit step
-        // is shorter. This error favours implicit dynamics: a body becomes explicit only if this certainly saves time.
+        // The bodies of the first estimate count twice: in `cost_of_all` and in the costs of `old`. This overestimates
+        // the explicit cost more, because the explicit step is shorter. So a body becomes explicit only if this
+        // certainly saves time.
         updated.explicit_cost = (cost_of_all + old.explicit_cost * old.explicit_step) / updated.explicit_step;
         updated.implicit_cost = (cost_of_all + old.implicit_cost * old.implicit_step) / step;
         updated.damped_above = 0;  // an explicit body is not damped by its steps

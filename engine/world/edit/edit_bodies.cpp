@@ -117,10 +117,10 @@ struct RowsOfBody {
 };
 
 /// Builds the elements of a body and appends them to the tables. `known`: stored results for an earlier body with the
-/// same mesh, or null. The list of elements is a local variable, so that it is freed on return: it takes a third of the
-/// memory of all tables of the body.
+/// same mesh, or null.
 void append_elements_of(Model& model, const NewBody& body, std::span<const MaterialZone> zones,
                         const KnownElements* known, RowsOfBody& rows) {
+    // local, so that it is freed on return: it takes a third of the memory of all tables of the body
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     rows.places = known ? known->places : find_places(list, rows_of(model.nodes.rest_position, rows.nodes));
@@ -130,12 +130,12 @@ void append_elements_of(Model& model, const NewBody& body, std::span<const Mater
     rows.covered = covered_tetrahedra(list, rows.elements.element);
 }
 
-/// Surface triangles of a body in local node numbers. These are the triangles given by the user, or the boundary of the
-/// tetrahedra. The boundary is read from the surface tables. A round body has no rows in these tables, so the boundary
-/// of its tetrahedra is computed here.
+/// Surface triangles of a body in local node numbers: the triangles given by the user, or the boundary of the
+/// tetrahedra.
 std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, const NewBody& body) {
     std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
     if (body.core_nodes > 0) {
+        // a round body has no rows in the surface tables
         for (const BoundaryTriangle& triangle : boundary_triangles(body.tetrahedra)) triangles.push_back(triangle.node);
     } else if (!body.tetrahedra.empty()) {
         for (const auto& [i, j, k] : rows_of(model.surface.triangles.node, model.bodies.triangles[b])) {

@@ -62,9 +62,8 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Motion of the shape of a collider. The keys of `motion` are poses of the shape frame (see shape_frame), not of the
-/// collider frame; so are the poses of move_to and set_pose. If no key has a rotation, the shape keeps the rotation of
-/// `placed`, its pose without keys.
+/// Motion of the shape of a collider. Its keys are poses of the shape frame (see shape_frame), as in move_to and
+/// set_pose. If no key has a rotation, the shape keeps the rotation of `placed`, its pose without keys.
 Motion motion_of_shape(const Motion& motion, const RigidPose& placed) {
     Motion of_shape = motion;
     if (!motion.turns())

@@ -67,10 +67,11 @@ std::vector<Real> densities(const Model& model, const NewBody& body);
 /// blocks. `element_at`: number of the element in each lane; no_index in an unused lane.
 Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at);
 
-/// Appends a body that consists of a surface, with or without tetrahedra. Returns its row. `stiffness_sum`: working
-/// memory with one entry per node. The caller keeps this memory between calls, so that the cost of a call depends only
-/// on the size of the new body. `trial`: results of choose_dynamics() for this body; if null, results stored for an
-/// earlier body with the same mesh are used, if there are any.
+/// Appends a body that consists of a surface, with or without tetrahedra. Returns its row.
+/// - `stiffness_sum`: working memory with one entry per node. The caller keeps it between calls, so that the cost of a
+///   call depends only on the size of the new body.
+/// - `trial`: results of choose_dynamics() for this body. Null: results stored for an earlier body with the same mesh
+///   are used, if there are any.
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body, const KnownElements* trial = nullptr);
 
 // choose_dynamics.cpp
@@ -82,9 +83,9 @@ void require_implicit_materials(const Model& model, Index material, std::span<co
 /// Throws SceneError, because a material of the implicit body with this name sets a loss factor above 0.
 [[noreturn]] void refuse_losses(const std::string& body);
 
-/// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
-/// `estimate`. A comparison of costs needs results of find_steps(). If none are stored for the same mesh, computes them
-/// and writes them to `trial`. `body.dynamics` must be explicit_elastic.
+/// Decides whether a new body should be explicit or implicit, and writes the reason to `estimate`. The cost estimate
+/// needs results of find_steps(). If none are stored for the same mesh, computes them and writes them to `trial`.
+/// `body.dynamics` must be explicit_elastic.
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
                              std::optional<KnownElements>& trial);
 
@@ -118,15 +119,15 @@ MassProperties mass_properties(const Model& model, const NewBody& body);
 /// Adds the lumped masses of the tetrahedra to the node masses, and sets the inverse masses. An inverse mass above 0
 /// lets a node move.
 void set_masses(Model& model, const NewBody& body, Range nodes);
-/// Finds the mass forms of a body and, for linear elements, the frame masses: divisions of the node masses among the
-/// elements that can lengthen the stable step (mass_forms.h, frame_masses.h). The mass shares must be known. Mass forms
-/// are dropped if they do not lengthen the stable step at rest. Frame masses are dropped if they do not lengthen it by
-/// a tenth. Returns the stable step at rest [s].
+/// Divides the node masses among the elements of a body so that the stable step becomes long
+/// (docs/methods/stable_step.md 2). Returns the stable step at rest [s]. The mass shares must be known. Mass forms are
+/// kept if they lengthen the step. Frame masses, which only linear elements get, are kept if they lengthen it by a
+/// tenth.
 Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
 /// Removes the mass forms and frame masses of the elements in `blocks`.
 void forget_mass_forms(Model& model, Range blocks);
 /// Finds the relaxation rates and mass shares of the elements of a body, and its stable step at rest. The elements must
-/// not be rotated, and must have no mass forms, frame masses or relaxation rates yet.
+/// have the orientation of the mesh, and must have no mass forms, frame masses or relaxation rates yet.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 Column<Real>& stiffness_sum);
 /// Computes masses and stable steps of a body again after its materials have changed. Stored results of earlier bodies
@@ -135,7 +136,8 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
 /// Returns the stored results of find_steps for an earlier body with the same mesh, materials and element kind; nullptr
 /// if there are none.
 const KnownElements* known_elements(const Model& model, const NewBody& body);
-/// Copies stored results to a new body. This replaces a call of find_steps. The elements must not be rotated yet.
+/// Copies stored results to a new body. This replaces a call of find_steps. The elements must still have the
+/// orientation of the mesh; append_body() later rotates them to the orientation of the body.
 void take_steps(const KnownElements& known, Index row, Model& model);
 /// Stores the results of find_steps for later bodies with the same mesh. `places`: element in each SIMD lane of the
 /// element blocks of the body.

@@ -48,10 +48,9 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// Must be called after the node displacements or the mass of a body were changed. Updates RigidBodyTable::large, which
-/// marks bodies with large strain (StiffBody::becomes_large). For a free body with large strain, also computes the
-/// moments of inertia and the principal axes of the deformed shape. When large strain ends, computes those of the rest
-/// shape.
+/// Updates RigidBodyTable::large, which marks bodies with large strain (StiffBody::becomes_large). The inertia of a
+/// free body follows the deformed shape while the body has this mark. Must be called after node displacements or the
+/// mass of a body have changed.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -80,9 +79,9 @@ void give_nodes_velocity(Model& model, std::size_t body) {
     }
 }
 
-/// Distributes the mass of a body among its nodes (Model::shares_mass). Sums over node masses then give the mass and
-/// the centre of mass exactly. The mass of a node depends linearly on its position, so it may be negative if the centre
-/// of mass is far from the mean of the node positions.
+/// Distributes the mass of a body among its nodes, so that sums over nodes give its mass and centre of mass
+/// (Model::shares_mass). The mass of a node depends linearly on its position. It may be negative if the centre of mass
+/// is far from the mean node position.
 void share_mass(Model& model, std::size_t body) {
     const std::size_t r = rigid_row(model, body);
     const RigidBodyTable& table = model.rigid_bodies;
@@ -437,9 +436,9 @@ void follow_node_velocities(Model& model, std::size_t body) {
 
 namespace {
 
-/// Energies and momenta of a held body, summed over the nodes n for which counts(n) is true. Nodes are used, because
-/// the row of a held body in RigidBodyTable has no momentum: the motion of its frame is prescribed. The elastic energy
-/// is always that of the whole body.
+/// Energies and momenta of a held body, summed over the nodes n for which counts(n) is true. RigidBodyTable has no
+/// momentum of a held body, because the motion of its frame is prescribed. The elastic energy is always that of the
+/// whole body.
 RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
     RigidSums sums;
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {

@@ -36,9 +36,9 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
 /// Finds the attachments that hold whole rigid bodies or the frames of implicit bodies, and the pose of each held body
 /// relative to its attachment.
 void find_holding_attachments(Model& model);
-/// Must be called after an implicit body was attached or released, or after its held nodes were moved. From then on the
-/// deformation is measured in the frame of the attachment, or in the body's own frame if the body is free. All nodes
-/// keep their positions and velocities.
+/// Lets an implicit body deform relative to the frame of its attachment, or to its own frame if it is free. Must be
+/// called after the body was attached or released, or after its held nodes were moved. All nodes keep their positions
+/// and velocities.
 void follow_attachments(Model& model, std::size_t body);
 
 /// Must be called after the mass of a free implicit body was computed again. Computes the inertia of the deformed

@@ -40,8 +40,7 @@ bool rests(const Model& model, Index body) {
 }
 
 /// Force [N], and moment about `moment_point` [N m], with which an attachment balances the elastic forces of an
-/// implicit body at the nodes `held`. If the attachment also holds the rotating frame of the body (find_holders), the
-/// result includes the moment that the elastic forces on all nodes exert on this frame.
+/// implicit body at the nodes `held`.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -53,6 +52,7 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     ImpulseAndMoment hold;
     for (const std::size_t n : held) hold += {-force[n - first], -turning(n)};
     const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
+    // The attachment also holds the rotating frame, on which the elastic forces on all nodes exert a moment.
     if (model.rigid_bodies.holder[r] == static_cast<Index>(attachment))
         for (std::size_t n = first; n < first + force.size(); ++n) hold.moment += turning(n);
     return hold;
@@ -113,8 +113,7 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
 }
 
 /// Initialises the forces of attachments on sleeping bodies, like take_over_rest() as sums over one second. An
-/// attachment balances all other forces on its nodes. The elastic part of these forces follows from virtual work: from
-/// the change of elastic energy when only these nodes move. `contact_force`: contact force on each node [N].
+/// attachment balances all other forces on its nodes. `contact_force`: contact force on each node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
@@ -145,6 +144,7 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
             row.sums_at_rest += hold_of_implicit(model, a, held, moment_point_);
             continue;
         }
+        // The elastic forces follow from virtual work: the change of elastic energy when only these nodes move.
         const auto power = [&](auto&& motion_of) {
             for (const std::size_t n : held) motion[n] = motion_of(nodes.position[n]);
             return kernels().elastic_power(model.all_elements(), model.bodies.blocks[static_cast<std::size_t>(body)],
@@ -203,8 +203,8 @@ Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
 
 bool ForceLedger::shows_contacts() const {
     // Least length of the call, as a fraction of the last step before it. A step may leave gaps that are a small
-    // fraction of the distance that bodies travel in it. In a much shorter call, bodies may not close these gaps, and
-    // contact forces would be missing.
+    // fraction of the path of the bodies in it. A much shorter call may not close these gaps, so contact forces would
+    // be missing.
     constexpr Real shortest_share = 0.01;
     return call_.whole_step > 0 && call_.whole_step >= shortest_share * step_before_;
 }
@@ -275,9 +275,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// True if the forces of the step are those on a body at rest: the body was still at the beginning and at the end of
-/// the step. In the step that stops a body, contacts also take its momentum, so their forces are not those at rest.
-/// They count nevertheless if the body falls asleep in this step, because no others are known.
+/// True if the body was still at the beginning and at the end of the step. In a step that stops a body, contacts also
+/// take its momentum. Such a step counts only if the body falls asleep in it, because no other forces are known.
 bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
     const Real still_time = model.bodies.still_time[body];
     return still_time > step_.whole_step || (still_time > 0 && rests(model, static_cast<Index>(body)));
@@ -285,7 +284,7 @@ bool ForceLedger::stayed_still(const Model& model, std::size_t body) const {
 
 /// Completes the sums of a pair at the end of a step.
 /// - If both bodies were asleep and the step has no contact between them, the pair gets the impulse of its mean force
-///   at rest, which is still / still_seconds.
+///   at rest, which is sums_at_rest / still_seconds.
 /// - If a body was awake but both stayed still, the step is added to still_seconds.
 /// - If a body has moved, sums_at_rest and still_seconds are set to zero.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> was_asleep, PairRow& row) {

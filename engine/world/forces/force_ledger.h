@@ -29,12 +29,11 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Values of an object or a pair of objects in one call of advance: the largest mean force of a step, the number of
-    /// contacts in the last step, and the largest number of contacts in a step. Also contains the sums over the present
-    /// step.
+    /// Forces and contacts of an object or a pair of objects in one call of advance. Also contains the sums over the
+    /// present step, from which they follow.
     struct Peak {
-        Real largest_force = 0;  // [N]
-        Index contacts = 0, most_contacts = 0;
+        Real largest_force = 0;                 // largest mean force of a step [N]
+        Index contacts = 0, most_contacts = 0;  // number of contacts in the last step, and the largest in a step
         // Impulse and number of contacts in the present step. end_step sets both to zero.
         Vec3 impulse = Vec3::Zero();  // [N s]
         Index step_contacts = 0;
@@ -74,19 +73,18 @@ public:
     /// True if the call was long enough for contact forces to be measured. The step before the call may have left small
     /// gaps. A call much shorter than this step may not close them, so that contacts would have no force.
     bool shows_contacts() const;
-    /// True if the force of an attachment counts as measured. The effect of rounding errors of positions and velocities
-    /// must be small, and on a rigid body shows_contacts() must be true. On a sleeping body the force counts as
-    /// measured in every call with at least one step. `attachment`: row of AttachmentTable. `impulse`: its impulse in
-    /// this call [N s].
+    /// True if the force of an attachment counts as measured: rounding errors of positions and velocities have a small
+    /// effect, and on a rigid body shows_contacts() is true. On a sleeping body the force counts in every call with at
+    /// least one step. `attachment`: row of AttachmentTable. `impulse`: its impulse in this call [N s].
     bool shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const;
 
     /// Starts to measure forces. Sleeping bodies get the contact and attachment forces of the last step before they
     /// fell asleep.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
-    /// Must be called before the first step of a call of advance, and again at the end of a call without a step. Sets
-    /// the sums to zero, and stores the velocities of held nodes. `step_before`: length of the last step before the
-    /// call; 0 if there was none [s].
+    /// Begins the sums of a call of advance: sets them to zero, and stores the velocities of held nodes. Must be called
+    /// before the first step of the call, and again at its end if it had no step. `step_before`: length of the last
+    /// step before the call; 0 if there was none [s].
     void begin_call(const Model& model, Real step_before, StepScratch& scratch);
     /// Must be called after a committed step. `was_asleep`: for each body, nonzero if the body was asleep when the step
     /// began.

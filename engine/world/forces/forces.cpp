@@ -104,10 +104,9 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
-    // The mean force is the impulse divided by the time for which forces act. In each step, they act on implicit bodies
-    // for the step length, and on other bodies for StepParameters::kick_time, which also depends on the length of the
-    // step before. If the step length varies in the call, the sums of these two times differ. If both kinds of bodies
-    // touch the collider and the sums differ too much, no mean force on the collider is defined.
+    // The mean force is the impulse divided by the time for which forces act: the sum of step lengths for implicit
+    // bodies, of kick times for others (docs/methods/time_stepping.md 1.5). It is not defined if the collider touches
+    // both kinds of bodies and these times differ too much.
     Real shortest = infinity, longest = 0;
     bool touched = false, awake = false;
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {

@@ -16,9 +16,9 @@ AnchorRow row_of(const MaterialPoint& point) {
     return {point.node, point.weight, Vec3::Zero()};
 }
 
-/// Fixes a point to a rigid body, inside or outside of the body, by barycentric weights of the corners of one
-/// tetrahedron of its mesh. Every tetrahedron that is not flat represents the point exactly. The one with the smallest
-/// sum of squared weights is used, because its rounding errors are smallest.
+/// Fixes a point, inside or outside of a rigid body, to one tetrahedron of its mesh by barycentric weights. Every
+/// tetrahedron that is not flat represents the point exactly. The smallest sum of squared weights gives the smallest
+/// rounding errors.
 AnchorRow point_of_rigid_body(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                               const Vec3& point) {
     MaterialPoint best;

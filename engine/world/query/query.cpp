@@ -53,9 +53,10 @@ SurfaceHit hit_of(const Model& model, const TrianglePoint& found, std::size_t bo
 }
 
 /// Returns the nearest hit on all surfaces that the filter admits. Of equally near hits the first one counts: bodies
-/// are searched before colliders, both in the order of their rows. `limit`: largest distance of a hit [m]; each hit
-/// reduces it to the distance of this hit. of_tree() returns the nearest hit on a surface of triangles, of_shape() on
-/// an analytic shape, and both only up to the distance in their argument `limit`.
+/// are searched before colliders, both in the order of their rows.
+/// - `limit`: largest distance of a hit [m]. Each hit reduces it to the distance of this hit.
+/// - of_tree(), of_shape(): return the nearest hit on a surface of triangles, and on an analytic shape, up to the
+///   distance in their argument `limit`.
 std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter, Real limit, auto&& of_tree,
                                    auto&& of_shape) {
     world.settle();

@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Calls act(), a function that all ranks run together. If an error occurs on this rank only, for example for lack of
-/// memory, all ranks are ended: the others would wait for this rank forever, and its state may be half changed. A
-/// SceneError occurs on all ranks alike and is passed on. `ranks`: null if this process is alone.
+/// Calls act(), a function that all ranks run together. An error on this rank only, for example lack of memory, ends
+/// all ranks, because the others would wait forever. A SceneError occurs on all ranks alike and is passed on. `ranks`:
+/// null if this process is alone.
 void act_together(Ranks* ranks, auto&& act) {
     if (ranks == nullptr) return act();
     try {

@@ -40,9 +40,9 @@ struct LedBodies {
     }
 };
 
-/// Sends the predicted velocities of own bodies with RankState::leads to the ranks that hold their ghosts, and receives
-/// the velocities of the led ghosts on this rank. Both ranks visit bodies in the order of the undivided world, so
-/// messages need no row numbers. Sleeping bodies have no velocity and are left out.
+/// Sends the predicted velocities of own bodies with RankState::leads to the ranks that hold their ghosts (copies), and
+/// receives those of the led ghosts on this rank. All ranks visit bodies in the order of the undivided world, so
+/// messages need no row numbers.
 void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail,
                       RankChannel& channel) {
     mail.start(bodies.peers.size());

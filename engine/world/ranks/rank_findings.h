@@ -10,9 +10,10 @@
 namespace skerry {
 
 /// Findings of this rank in an attempt at a step, or the combined findings of all ranks. They name bodies by their rows
-/// in the undivided world, because rows of BodyTable differ between ranks. In the combined findings, each crossing,
-/// element, contact and region counts once, although several ranks may hold it. Sums of energy are not included,
-/// because their last digits would depend on the order of the ranks.
+/// in the undivided world, because rows of BodyTable differ between ranks.
+///
+/// In the combined findings, each crossing, element, contact and region counts once, although several ranks may hold
+/// it. Sums of energy are left out, because their last digits would depend on the order of the ranks.
 struct RankFindings {
     // Fault of the first faulty body, in the order of the undivided world. `fault_value`: StepVerdict::value, the size
     // of the fault.

@@ -54,9 +54,9 @@ struct RankSleep {
     // bodies that this rank wakes and other ranks hold too: rows in the undivided world
     Column<Index> woken;
     Column<SetMember> members;  // entries for the sets that this rank has found
-    // Elements of the union-find `joined`, here called nodes. `node_of_body`: for each row of the undivided world, the
-    // node that stands for the body. `node_of_set`: for each set in the message that is being read, the node that
-    // stands for the set. no_index: none yet.
+    // Nodes (elements) of the union-find `joined`, or no_index where there are none yet.
+    // - `node_of_body`: for each row of the undivided world, the node that stands for the body.
+    // - `node_of_set`: for each set in the message that is being read, the node that stands for the set.
     Column<Index> node_of_body, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
     UnionFind joined;               // union of the sets that all ranks have found; sets with a common body are joined
@@ -76,9 +76,9 @@ struct LabelRounds {
     int needed = least;  // greatest number of rounds that an attempt has needed since the last check
     int steps = 0;       // number of attempts since the last check
 
-    /// Adjusts `count` to the number of rounds that an attempt has needed. More than `count` means that the labels had
-    /// not settled: the next attempt has one more round. After 500 attempts without such an increase, `count` falls to
-    /// the greatest number needed since the last check.
+    /// Adjusts `count` to the number of rounds that an attempt has needed. If this number exceeds `count`, the labels
+    /// had not settled, and the next attempt has one more round. After 500 attempts without such an increase, `count`
+    /// falls to the greatest number that they needed.
     void note(int rounds) {
         constexpr int steps_between_checks = 500;
         if (rounds > count) {

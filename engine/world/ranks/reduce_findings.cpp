@@ -131,9 +131,9 @@ void take_findings(const RankFindings& all_findings, const StageFindings& found)
                      .fastest = {all_findings.strain_rate, or_none(all_findings.strained_body)}};
     if (all_findings.fault == StepFault::not_finite) found.verdict.fastest = {};
     found.strained.unsolved = or_none(all_findings.unsolved_body);
-    // The findings must equal those of a process that simulates the whole world. That process tests for inversions and
-    // crossings only if no body has a fault. For the test for crossings, moreover, no list of contact candidates
-    // (features that may touch) may be too short (beyond_lists).
+    // The findings must equal those of a process that simulates the whole world. It tests for inversions and crossings
+    // only if no body has a fault. It tests for crossings only if, moreover, its lists of contact candidates (features
+    // that may touch) are long enough (beyond_lists).
     const bool tested = all_findings.fault == StepFault::none;
     found.inversions = tested ? Inversions{all_findings.inversions, or_none(all_findings.inverted_body),
                                            all_findings.inverted_tetrahedron, all_findings.inverts_first}

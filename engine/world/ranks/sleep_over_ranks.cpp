@@ -1,6 +1,6 @@
-// Sleep of bodies that several ranks hold. Each rank stores only the contacts of its own pairs. A set of touching
-// bodies is therefore joined from the sets of all ranks, and a body wakes on all its ranks if one of them wakes it. The
-// ranks exchange such data only if reduce_findings shows that one of them needs it, which is rare.
+// Sleep of bodies that several ranks hold. Each rank stores only the contacts of its own pairs. So sets of touching
+// bodies are joined over all ranks, and a body wakes on all its ranks if one of them wakes it. The ranks exchange such
+// data only if reduce_findings shows that one of them needs it.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -47,9 +47,8 @@ void copy(std::span<const Row> from, Column<Row>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Lists the sleeping bodies that this rank wakes and other ranks hold too. Bodies that wake because a link, such as a
-/// joint, connects them to an awake body are left out, because every rank that holds them finds them itself. Also notes
-/// whether a body that several ranks hold may fall asleep in this step.
+/// Lists the sleeping bodies that this rank wakes and other ranks hold too. Also notes whether a body that several
+/// ranks hold may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& own_findings) {
@@ -60,6 +59,7 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
     if (std::ranges::none_of(bodies.asleep, [](std::uint8_t each) { return each != 0; })) return;
     copy(bodies.asleep, memory.asleep);
     copy(bodies.still_time, memory.still_time);
+    // Links, such as joints, to awake bodies are left out: every rank that holds the bodies finds them itself.
     TouchInputs without_links = touches;
     without_links.linked_first = without_links.linked_second = {};
     if (!wake_bodies(without_links, pressed, driven, attachments.body, attachments.motion, memory.asleep,

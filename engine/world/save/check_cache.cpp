@@ -87,10 +87,11 @@ bool inside(Index row, Range range) {
 }
 
 /// True if a candidate (two features that may touch) consists of a feature of body `a` and a part or a point of a
-/// collider. An edge can have contacts_of_edge contacts with one part, so the candidate of an edge and part p has the
-/// second number contacts_of_edge * p (edge_collider_feature).
+/// collider.
 bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a, ColliderShape shape) {
     const Index parts = collider_part_count(shape), second = second_local(candidate.feature);
+    // An edge can have contacts_of_edge contacts with each part p, so its candidate has the second number
+    // contacts_of_edge * p (edge_collider_feature).
     if (is_edge_edge(candidate.feature))
         return inside(candidate.first, bodies.edges[a]) && second < contacts_of_edge * parts &&
                second % contacts_of_edge == 0;

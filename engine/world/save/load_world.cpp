@@ -127,9 +127,9 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.rebuild_outlines();
     model.derive_all();
     find_holding_attachments(model);
-    // Model::forced tells whether force elements (loads, springs and the like) act. It must stay true for one step
-    // after the last of them was removed, because this step counts the work of its last forces. The world may have been
-    // saved before this step. note_forces keeps `forced` true only if it was true before the call, so it is set here.
+    // note_forces keeps Model::forced true only if it was true before. It must be true if the last force element (load,
+    // spring and the like) was removed shortly before the world was saved: the next step counts the work of its last
+    // forces.
     model.forced = true;
     note_forces(model);
     model.links_open = true;

@@ -37,8 +37,8 @@ public:
     /// its objects.
     std::vector<PairOverlap> find_all();
     /// Finds pairs of objects that may touch, because their bounding boxes overlap. At least one object of a pair must
-    /// be marked, and at least one must not have been checked by an earlier search. `marked`: for each row of
-    /// BodyTable, nonzero if the body is marked.
+    /// be marked, and at least one not checked by an earlier search. `marked`: for each row of BodyTable, nonzero if
+    /// the body is marked.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> overlap_of(const StartPair& pair);
 

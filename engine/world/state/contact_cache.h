@@ -16,9 +16,9 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Must be called for an object that was moved between steps. The next step then searches all pairs of this object
-    /// again, because their stored distances are no longer valid. The next step also tests again whether a moved body
-    /// is strained, and whether its tetrahedra are inverted.
+    /// Makes the next step search all pairs of an object again. Must be called if the object was moved between steps,
+    /// because stored distances are then no longer valid. The next step also tests whether a moved body is strained,
+    /// and whether its tetrahedra are inverted.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
     /// Adds rows for new bodies and colliders. Their distances to other objects count as unknown until the next step

@@ -23,9 +23,9 @@ struct OwnElements {
     Ragged<Index> covered;
 };
 
-/// Cache of one body for data that depend only on its mesh, the materials of its tetrahedra, its element kind and
-/// BodyRecord::built. None of these changes during the life of a BodyRecord, so the cache never becomes invalid. Data
-/// are built at the first request. Several threads may request them at the same time. A copy of a cache is empty.
+/// Cache of one body for data that depend only on its mesh, materials, element kind and BodyRecord::built. These never
+/// change during the life of a BodyRecord, so the cache never becomes invalid. Several threads may request data at the
+/// same time; the first request builds them. A copy of a cache is empty.
 class FieldCache {
 public:
     FieldCache();

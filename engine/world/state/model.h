@@ -107,8 +107,10 @@ struct NamedHandles : HandleMap<HandleType> {
 };
 
 /// Properties, over all ranks (processes of a divided world), on which the length of a step depends. reduce_limits
-/// computes them. Without ranks the initial values remain, which limit nothing. A row in the undivided world is the row
-/// of BodyTable that a body would have if one process simulated all bodies.
+/// computes them. Without ranks the initial values remain, which limit nothing.
+///
+/// The row of a body in the undivided world is the row of BodyTable that it would have if one process simulated all
+/// bodies.
 struct LimitsOfRanks {
     Real stable_step = infinity;  // shortest stable step [s]
     Index stiffest = no_index;    // row in the undivided world of the body with this stable step

@@ -1,6 +1,7 @@
-// Data that the stages of one step pass to each other, and working memory of the stages. Most of these data are not
-// used after the step. There are three exceptions. Users can read contacts and regions until the next step. The next
-// step uses the estimates of solver cost in `solver_memory`, and the velocities in ForceScratch::held_velocity.
+// Data that the stages of one step pass to each other, and working memory of the stages. These data are not used after
+// the step, except for
+// - contacts and regions, which users can read until the next step,
+// - `solver_memory` (estimates of solver cost) and ForceScratch::held_velocity, which the next step uses.
 #pragma once
 
 #include "components/cable_table.h"

@@ -17,10 +17,9 @@ namespace skerry {
 
 namespace {
 
-/// Number of steps in a round. In each round the stable step of every body is evaluated once, because deformation of
-/// the body changes it. The stable step in use is never older than two rounds. With clusters (groups of nodes that
-/// implicit elements couple), steps are several times longer, and elements deform more in each step. The rounds then
-/// have fewer steps.
+/// Number of steps in a round, which evaluates the stable step of each body once (docs/methods/stable_step.md 6). So a
+/// stable step in use is at most two rounds old. With clusters (groups of nodes that implicit elements couple), longer
+/// steps deform elements more, so rounds are shorter.
 std::uint64_t steps_per_round(const WorldState& world) {
     return world.model.clusters.empty() && !world.model.of_ranks.has_clusters ? 128u : 64u;
 }
@@ -41,8 +40,9 @@ bool keep_watch(WorldState& world) {
     return !watch.second;
 }
 
-/// Limits of the first attempt at a step in a call of advance. They follow from the speed of deformation at the start
-/// of the call.
+/// Returns the upper limit of the step length for the first attempt at a step in a call of advance, and the body that
+/// causes it. The limit follows from the element that deforms fastest at the start of the call, which must not deform
+/// too much in the step (slow_enough()).
 AttemptLimits limits_of_first_attempt(WorldState& world) {
     const Model& model = world.model;
     const Real longest = longest_allowed_step(model), max_strain_step = model.tuning.max_strain_step;
@@ -197,17 +197,15 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.world_row_of(row);
 }
 
-/// Fetches copies of bodies (ghosts) from other ranks, if this is necessary after the last attempt: a rank lacked
-/// bodies, or bodies may have moved to where other ranks need them. Otherwise does nothing and returns false.
-///
-/// The next attempt must compute all forces anew, because new ghosts have none; h = 0 marks the forces as unknown.
-/// Stiffening of clusters (implicitly integrated groups of nodes) has added impulses to the discarded forces. Therefore
-/// the assumed stiffness is restored too: the next attempt stiffens the same clusters and adds these impulses again.
+/// Fetches ghosts (copies of bodies of other ranks), if the last attempt has shown that this is necessary: a rank
+/// lacked bodies, or bodies may have moved to where other ranks need them. Otherwise does nothing and returns false.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all_findings.bodies_missing && !world.ranks.all_findings.ghosts_expired) return false;
+    // The discarded forces contain impulses by which clusters (implicitly integrated groups of nodes) have stiffened.
+    // The next attempt must stiffen the same clusters again.
     world.transaction.restore_stiffness(world.model);
     update_ghosts(world);
-    world.scratch.parameters.h = 0;
+    world.scratch.parameters.h = 0;  // marks the forces as unknown, because new ghosts have none
     return true;
 }
 
@@ -288,9 +286,9 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     // Nodes that are only drawn (those of round bodies) can be updated late, unless there are force elements: these
     // read all nodes in every step.
     world.scratch.parameters.draws_late = !model.forced;
-    // `stiffened`: energy that clusters (groups of nodes that implicit elements couple) have gained since the last
-    // committed step, because their elements have stiffened [J]. `stiffened_before`: its value before the attempt that
-    // computed the present forces. If these forces are discarded, `stiffened` returns to this value.
+    // `stiffened`: energy that clusters (groups of nodes that implicit elements couple) have gained by stiffening since
+    // the last committed step [J]. `stiffened_before`: its value before the attempt that computed the present forces.
+    // If these are discarded, `stiffened` returns to this value.
     Real stiffened = 0, stiffened_before = 0;
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.

@@ -79,10 +79,10 @@ BodySums measure(const Model& model, Real time, Real lag) {
         if (!model.is_held(b)) kicked += of_body.momentum;
     }
     total.kinetic += added_energy(model);
-    // The velocities are `lag` (half a step) older than the positions. The kinetic energy is therefore increased by
-    // `lag` times the power of all forces but contacts. To first order the result is m v.v' / 2, with the mass m and
-    // the velocities v and v' of two successive steps. The reason for this choice: for linear elastic bodies,
-    // symplectic Euler conserves the sum of this value and the elastic energy.
+    // Changes the kinetic energy to m v.v'/2 (to first order), with the mass m and the velocities v and v' of two
+    // successive steps. The change is `lag` (half a step) times the power of all forces but contacts.
+    //
+    // Reason: for linear elastic bodies, symplectic Euler conserves the sum of this value and the elastic energy.
     if (lag != 0) {
         total.kinetic -=
             lag * sum_of_own_blocks(model, [&](const Range& blocks) {

@@ -13,13 +13,12 @@ struct StepScratch;
 struct WorldState;
 
 /// Balance of energy and momentum: sums since the balance was opened, and the largest errors of the whole run. A change
-/// from outside, such as an added body or set velocities, closes the balance, because no measured cause explains it.
-/// The next check opens the balance again with the present energy and momentum.
+/// from outside, such as an added body or set velocities, closes the balance. The next check opens it again with the
+/// present energy and momentum.
 struct Balance {
     bool open = false;
-    // True if all momentum that bodies exchange with their surroundings is measured. False if a damped body was held
-    // when the balance was opened, or if a held node has belonged to an implicit element since then. Damping, or the
-    // inertia of the element, then passes momentum to held nodes that is not measured.
+    // False if held nodes may get momentum that is not measured: by damping, if a damped body was held when the balance
+    // was opened, or by the inertia of an implicit element to which a held node has belonged since then.
     bool momentum_known = true;
     std::uint64_t steps = 0;  // number of steps since the balance was opened
     // values when the balance was opened
@@ -45,9 +44,10 @@ void add_step(const StepScratch& step, Balance& balance);
 
 /// Compares the present energy and momentum with their expected values: the values when the balance was opened, plus
 /// the work and impulse since then. Records the difference if it is the largest so far. Opens the balance if it is
-/// closed. Reads all tables. `time`: present time [s]. `lag`: time by which velocities are older than positions [s];
-/// the kinetic energy is corrected for it with the present forces. With ranks the function is collective, and sums
-/// energy and momentum over all ranks.
+/// closed. With ranks the function is collective, and sums over all ranks.
+///
+/// `time`: present time [s]. `lag`: time by which velocities are older than positions [s]; the kinetic energy is
+/// corrected for it with the present forces.
 void check_balance(const WorldState& world, Real time, Real lag, Balance& balance);
 
 /// Checks a copy of the balance (check_balance) and returns it, for a report. A closed balance is returned unchecked.

@@ -28,18 +28,18 @@ constexpr Real entry_cost = 0.7;
 /// Clusters must reduce the computing time of a simulated second at least by this factor. A smaller gain does not
 /// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
-/// Upper bound of the moment of inertia that clusters may add to a body. The bound is the larger of two values:
-/// share_of_moment times the smallest principal moment I of the body, and share_of_lumping times the amount by which
-/// lumping of the masses increases I. In typical meshes the bound is 3 to 20 % of I.
+/// Limits of the moment of inertia that clusters may add to a body: the larger of share_of_moment times its smallest
+/// principal moment I, and share_of_lumping times the amount by which lumping of the masses increases I. In typical
+/// meshes this is 3 to 20 % of I.
 constexpr Real share_of_moment = 0.01, share_of_lumping = 0.25;
 // Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
 /// Assumed stiffness of the elements of clusters, divided by their stiffness at rest. Cluster matrices are computed
 /// with this stiffness, so that steps stay stable while strain stiffens the elements.
 constexpr Real stiffness_ratio = 4;
-/// Bodies with more nodes than this count as large. A step length is rejected if more than the fraction
-/// most_volume_of_large of the volume of a large body would be implicit. The implicit elements would then probably form
-/// a cluster larger than largest_cluster. This test is faster than the search for implicit elements.
+/// A step length is rejected if more than the fraction most_volume_of_large of a body with more than nodes_of_large
+/// nodes would be implicit. The implicit elements would then probably form a cluster larger than largest_cluster. This
+/// test is faster than the search for implicit elements.
 constexpr Index nodes_of_large = 8 * static_cast<Index>(largest_cluster);
 constexpr Real most_volume_of_large = 0.25;
 // Upper limit of the ratio of the stable step with clusters to the stable step without clusters.
@@ -47,19 +47,19 @@ constexpr Real most_lengthening = 32;
 /// Lower limit of the ratio of the stable step with clusters to that without. With a smaller ratio the computing time
 /// could hardly fall by the factor least_gain.
 constexpr Real least_lengthening = 1.68;
-/// Assumed ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. Both
-/// divide the masses of nodes among elements: a mass share is one number per element, a mass form a matrix
-/// (docs/methods/stable_step.md 2). The search for implicit elements uses mass shares, but the simulation mass forms.
-/// The measured ratio is 1.27 to 1.34 for four meshes.
+/// Assumed ratio of the stable step with mass forms to that with mass shares (docs/methods/stable_step.md 2), for
+/// explicit elements. Measured: 1.27 to 1.34 for four meshes. It is needed because the search for implicit elements
+/// uses mass shares, but the simulation mass forms.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.blocks[b].size() > 0;
 }
 
-/// True if a body must not have clusters, for one of two reasons. If one of its materials yields, plastic flow changes
-/// the stiffness from which cluster matrices are computed. If nodes are held along single directions (hold_axes), the
-/// impulses that hold them follow from the masses of single nodes and not from the inertia of clusters.
+/// True if a body must not have clusters, for one of two reasons:
+/// - One of its materials yields. Plastic flow changes the stiffness from which cluster matrices are computed.
+/// - Nodes are held along single directions (hold_axes). The impulses that hold them are computed from the masses of
+///   single nodes, not from the inertia of clusters.
 bool forbids_clusters(const Model& model, std::size_t b) {
     if (model.yields(b)) return true;
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a)
@@ -288,9 +288,9 @@ void set_cluster_step(Model& model, std::size_t b, Real step, Real stable) {
     model.bodies.rest_step[b] = std::min(step, stable);
 }
 
-/// Longest step for which the planned clusters are not too heavy [s]. The inertia that a cluster adds grows with the
-/// square of the step length for which it is made. `step`: planned step length [s]. `moment`: moment of inertia that
-/// the clusters add at this length, divided by the largest allowed value.
+/// Longest step for which the planned clusters are not too heavy [s]. The inertia that they add grows with the square
+/// of the step length. `step`: planned step length [s]. `moment`: moment of inertia that they add at this length,
+/// divided by the largest allowed value.
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : infinity;
 }
@@ -337,10 +337,12 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Returns the plan with the least computing time among the plans for several step lengths. If no plan reduces the
-/// computing time by the factor least_gain, returns a plan with step 0. Let s be the shortest stable step. The step
-/// lengths 2 s, 4 s, 8 s ... are tried first. If none of them gains enough, least_lengthening * s is tried. Last come
-/// lengths between the best one so far and twice the best one.
+/// Returns the plan with the least computing time among the plans for the following step lengths. s is the shortest
+/// stable step.
+/// - 2 s, 4 s, 8 s ...
+/// - least_lengthening * s, if none of these gains enough
+/// - lengths between the best one so far and twice the best one
+/// If no plan reduces the computing time by the factor least_gain, returns a plan with step 0.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};

@@ -1,8 +1,8 @@
-// The drifts of leapfrog. A drift changes positions, but not velocities. At both ends of a call of advance(), positions
-// and velocities belong to the same time. Between them, positions lead by half a step, so that each step changes
-// velocities in its middle and is symmetric in time. The first drift of a call produces this lead. If the step length
-// changes, a drift before the step changes the lead to half of the new step. The last drift of a call takes the lead
-// back.
+// The drifts of leapfrog, which change positions but not velocities (docs/methods/time_stepping.md 1.2). Within a call
+// of advance(), positions lead by half a step, so that each step changes velocities in its middle:
+// - The first drift of a call produces this lead.
+// - If the step length changes, a drift before the step changes the lead to half of the new step.
+// - The last drift takes the lead back, so that positions and velocities belong to the same time.
 #include <algorithm>
 
 #include "engine/world/step/step.h"

@@ -9,8 +9,7 @@
 namespace skerry {
 
 /// Returns for each body the row of the first body that equals it in rest shape, elements, materials, masses and held
-/// nodes. This is the row of the body itself if no earlier body is equal. Numbers are compared bitwise, and lists entry
-/// by entry.
+/// nodes. This may be the body itself. Numbers are compared bitwise, and lists entry by entry.
 std::vector<std::size_t> find_twins(const Model& model);
 
 }  // namespace skerry

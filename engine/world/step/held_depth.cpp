@@ -46,9 +46,7 @@ bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& p
 }
 
 /// Updates `deepest` with held nodes of `body` inside `other`. A node counts only if its nearest triangle has three
-/// held nodes. Otherwise contacts can move the triangle and so resolve the overlap. A node in front of its nearest
-/// triangle (is_in_front) is outside. For the remaining nodes, is_outside computes the winding number, which is slow.
-/// `pair`: ContactKey::pair of the two objects.
+/// held nodes, because contacts can move all other triangles. `pair`: ContactKey::pair of the two objects.
 void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
     const Model& model = world.model;
     const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));
@@ -62,6 +60,7 @@ void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t 
         if (!found || !(found->distance > deepest.depth)) return;
         const auto& [a, b, c] = model.surface.triangles.node[static_cast<std::size_t>(found->triangle)];
         if (!is_held(model, a) || !is_held(model, b) || !is_held(model, c)) return;
+        // is_outside computes the winding number, which is slow, so is_in_front is tried first
         if (is_in_front(model, *found, point) || is_outside(inputs, other, point)) return;
         deepest.take({found->distance, pair});
     });

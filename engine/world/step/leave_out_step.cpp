@@ -42,8 +42,8 @@ bool a_force_changes(const Model& model, Real time, Real h) {
 }
 
 /// True if the stable step of a shape that store_shapes has copied is still to be evaluated. A stage does this, so the
-/// step that is about to begin must not be skipped. This can happen although all bodies sleep: a body may have fallen
-/// asleep after its shape was copied.
+/// next step must not be skipped. This can happen although all bodies sleep, because a body may fall asleep after its
+/// shape was copied.
 bool checks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;

@@ -29,9 +29,8 @@ struct ForceElement {
     // positions.
     void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
-    // For each body, finds a rate: in a step of length h, the dampers of this force element reduce no node velocity of
-    // the body below exp(-rate h) times its value [1/s]. An entry of `of_body` that is below this rate is raised to it.
-    // The rate limits the stable step.
+    // For each body, raises the entry of `of_body` to a rate r if it is lower [1/s]: in a step of length h, the dampers
+    // of this force element reduce no node velocity below exp(-r h) times its value. This rate limits the stable step.
     void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
     // For each body, adds the rate c of drag forces -c m v on its nodes with the mass m and the velocity v [1/s]. These
     // forces limit the stable step too, because they are computed with the velocities at the start of the step.
@@ -49,11 +48,12 @@ struct ForceElement {
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 
-/// Factor on the stiffness of a force whose law has a kink, in its contribution to ForceElement::add_rate. Kinks are
-/// the rest length of a one-sided spring, and the pressure at which a liquid boils. Motion across a kink gains energy.
+/// Factor on the stiffness of a force whose law has a kink, in its contribution to ForceElement::add_rate. It makes the
+/// stable step of the force three times shorter, because motion across a kink gains energy. Kinks are the rest length
+/// of a one-sided spring, and the pressure at which a liquid boils.
+///
 /// A mass that bounces on a one-sided spring leaves it with 3.4 times its energy at the stable step of the linear law,
-/// and with 1.004 times its energy at a third of this step (symplectic Euler, mean over all phases of the impact). The
-/// contribution is a squared frequency, so the factor is 3^2.
+/// and with 1.004 times at a third of this step (symplectic Euler, mean over all phases of the impact).
 inline constexpr Real kink_factor = 9;
 
 /// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
@@ -90,14 +90,15 @@ extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law, held_axes
 /// other force elements add to it.
 inline constexpr std::array<const ForceElement*, 6> force_elements{&nodal_loads,  &loads_and_fields, &spring_forces,
                                                                    &cable_forces, &cavity_pressures, &fibre_forces};
-/// All motion models. The order matters where two models write the same columns. Rigid bodies come before implicit
-/// bodies, because their model also moves the frames relative to which implicit bodies deform. Held axes (nodes held
-/// along single directions) come last, because they correct the velocities that other models predict.
+/// All motion models, in an order that matters where two of them write the same columns:
+/// - rigid_bodies comes before implicit_bodies, because it also moves the frames relative to which implicit bodies
+///   deform.
+/// - held_axes (nodes held along single directions) comes last, because it corrects the velocities of other models.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies, &held_axes};
-/// All constraint laws. Contacts come first, because they are the first rows of the contact table, and rows of ties
-/// follow them. Held axes come last, because they have rows for those nodes that rows of other laws touch. `take` is
-/// called in the reverse order, so that each law finds its rows at the end of the table.
+/// All constraint laws. Contacts come before ties, like their rows in the contact table. Held axes come last, because
+/// they have rows for nodes that other rows touch. `take` is called in the reverse order, so that each law finds its
+/// rows at the end of the table.
 inline constexpr std::array<const ConstraintLaw*, 5> constraint_laws{&contact_law, &joint_law, &tie_law, &cable_law,
                                                                      &held_axes_law};
 

@@ -32,23 +32,22 @@ Real bound_of(const Column<Real>& of_body, std::size_t body) {
 
 Real step_of_body(const Model& model, std::size_t body) {
     Real step = model.bodies.stable_step[body];
-    // Adds two bounds of squared natural frequencies: 4 / step^2 for the elements, and `rate` for the force elements.
-    // The sum is a bound for both together, because the largest eigenvalue of a sum of symmetric matrices is at most
-    // the sum of their largest eigenvalues.
+    // Adds bounds of squared circular frequencies: 4 / step^2 for the elements, and `rate` for the force elements. The
+    // sum bounds those of both together (Weyl's inequality, docs/methods/stable_step.md 6.2).
     if (const Real rate = bound_of(model.force_rate, body); rate > 0) step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
     damping += bound_of(model.force_damping, body);
-    // In each step of length h, damping multiplies velocities by the factor k = exp(-damping h). A mode of the circular
-    // frequency omega is then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `one_plus_k` is 1 +
-    // k for h = `step`; without damping it is 2. The resulting step is at most this h, so its k is at least as large.
+    // In each step of length h, damping multiplies velocities by k = exp(-damping h). A mode of the circular frequency
+    // omega is stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). Here k is computed for h = `step`.
+    // The result is at most this h, so its k is at least as large.
     const Real one_plus_k = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
     step *= std::sqrt(one_plus_k / 2);
     const Real drag = bound_of(model.force_drag, body);
     if (!(drag > 0)) return step;
-    // Drag forces -c m v with the rate c reduce k by c h, so the condition becomes (omega h)^2 < 2 (1 + k - c h). The
-    // longest stable step is the h for which both sides are equal. A second bound, 1/c, ensures that drag does not
-    // reverse velocities; for bodies without elements it is the only limit.
+    // Drag forces -c m v with the rate c change the condition to (omega h)^2 < 2 (1 + k - c h). The result is the h for
+    // which both sides are equal, but at most 1/c, so that drag does not reverse velocities. For bodies without
+    // elements, 1/c is the only limit.
     const Real drag_share = std::isfinite(step) ? drag * step / (2 * one_plus_k) : 0;
     return std::min(std::isfinite(step) ? step * (std::sqrt(1 + drag_share * drag_share) - drag_share) : step,
                     1 / drag);
@@ -98,10 +97,9 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Returns a step length that is stable for the explicit elements of a body [s]. It is `stable`, a length that is known
-/// to be stable, or a longer one. A longer one may exist if a body with clusters is strained in a few places only. It
-/// is searched only if the body has clusters and `stable` is below `longest`, the length above which a longer result is
-/// of no use [s].
+/// Returns a stable step for the explicit elements of a body [s]: `stable`, or for a body with clusters a longer one,
+/// if the bound of docs/methods/stable_step.md 2.5 allows it. This is so if the body is strained in a few places only.
+/// `longest`: length above which a longer result is of no use [s].
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real longest, Real stable,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -124,9 +122,9 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
     return strained_step_of(model, body, position, model.bodies.rest_step[body], step, stiffness_sum);
 }
 
-/// Stable step of a body with its clusters [s]; NaN for an invalid shape. `step`: stable step of the explicit elements
-/// of the body [s]. A cluster is made for the step length cluster_step and an assumed stiffness of its elements. If an
-/// element is stiffer by a factor s > 1, the cluster is stable up to cluster_step / sqrt(s) only.
+/// Stable step of a body with its clusters [s]; NaN for an invalid shape. If an element of a cluster is stiffer than
+/// assumed by a factor s > 1, the cluster is stable up to cluster_step / sqrt(s) only. `step`: stable step of the
+/// explicit elements of the body [s].
 Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
@@ -156,11 +154,11 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // If the stable step of a body is shorter than goal_ / worth_clusters, those of its elements become implicit
-        // that are unstable at the step length reserve * goal_. In a body without clusters, reserve > 1 lets the body
-        // stay stable until the next evaluation. In a body with clusters, the larger worth_clusters makes elements
-        // implicit later, and reserve < 1 makes fewer elements implicit. Elements stay implicit when their strain
-        // decreases, even if they need it no longer.
+        // If the stable step of a body is shorter than goal_ / worth_clusters, its elements that are unstable at the
+        // step length reserve * goal_ become implicit. They stay implicit when their strain decreases.
+        // - In a body without clusters, reserve > 1 lets the body stay stable until the next evaluation.
+        // - In a body with clusters, worth_clusters is larger, so elements become implicit later, and reserve < 1, so
+        //   fewer do.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;

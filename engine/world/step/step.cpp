@@ -1,7 +1,8 @@
-// The step on one page: a list of stages in phases. The task graph derives the order of the stages from the data that
-// they read and write (docs/figures/step_graph.svg). Stages without common data, such as element forces and contact
-// search, run in parallel. The name of a stage has the form folder/function. The function bind() of an input struct
-// lists the columns that the stage reads.
+// The step on one page: a list of stages in phases. From the data that the stages read and write, the task graph
+// derives their order (docs/figures/step_graph.svg). Independent stages run in parallel.
+//
+// The name of a stage has the form folder/function. The function bind() of an input struct lists the columns that the
+// stage reads.
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"

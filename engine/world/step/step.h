@@ -47,9 +47,9 @@ Index world_row_of_stiffest(const WorldState& world, Index row);
 /// Computes BodyTable::ghost. Must be called after a change of bodies, of the ranks that own them, or of the ranks that
 /// hold copies of them.
 void note_ghosts(WorldState& world);
-/// Must be called at the end of a round of steps (steps_per_round in advance.cpp), after reduce_limits. For each body
-/// with new implicit elements, sends its data to the ranks that have copies of it. From then on these ranks compute the
-/// forces on their copies themselves.
+/// Sends the data of each body with new implicit elements to the ranks that have copies of it. From then on these ranks
+/// compute the forces on their copies themselves. Must be called at the end of a round of steps (steps_per_round in
+/// advance.cpp), after reduce_limits.
 void send_clustered_bodies(WorldState& world);
 /// Lists the stage that sends the predicted velocities of bodies to ranks with led ghosts of them. A led ghost is a
 /// copy of a body that needs these velocities, because only the owner of the body computes forces.
@@ -77,9 +77,9 @@ void list_joined_sets(WorldState& world, TaskGraph& graph);  // joins sets of to
 
 /// Lists the stage that combines the findings of all ranks. Lists nothing if this process simulates the whole world.
 void list_reduction(WorldState& world, TaskGraph& graph);
-/// Must be called before the stages run. Makes all ranks agree whether the step is skipped (StepScratch::skipped), and
-/// whether a body is too far from the origin. Communicates only if the last attempt has shown that a skipped step or
-/// such a body is possible. Without ranks it does nothing.
+/// Makes all ranks agree whether the step is skipped (StepScratch::skipped), and whether a body is too far from the
+/// origin. Must be called before the stages run. Communicates only if the last attempt has shown that one of the two is
+/// possible. Without ranks it does nothing.
 void agree_to_start(WorldState& world);
 
 // ranks/reduce_limits.cpp
@@ -117,9 +117,10 @@ HeldDepth held_in_surfaces(WorldState& world);
 void note_forces(Model& model);
 /// Computes Model::force_rate, force_damping and force_drag for the present positions.
 void note_force_rates(Model& model);
-/// Must be called before steps. Updates results that may be out of date: Model::forced if the last force element was
-/// removed, Model::force_rate if it depends on positions, and both Model::links and set_of_feature if rows that join
-/// bodies, or surface sets, have changed.
+/// Must be called before steps. Updates results that may be out of date:
+/// - Model::forced, if the last force element was removed
+/// - Model::force_rate, if it depends on positions
+/// - Model::links and set_of_feature, if rows that join bodies, or surface sets, have changed
 void note_changed_seams(Model& model);
 
 // stable_steps.cpp
@@ -135,9 +136,10 @@ Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports [s]. If it is infinite in a world with rigid or implicit bodies, the upper bound of the step
 /// length (longest_allowed_step) is returned instead.
 Real reported_step(const Model& model, Index* body = nullptr);
-/// Upper bound of the step length: the least of three values [s]. The first is the stable step times
-/// Tuning::step_safety. The second is Settings::step_size if it is given, otherwise 1/120 s if the world has rigid or
-/// implicit bodies. The third is Settings::implicit_step if it is above 0 and the world has implicit bodies.
+/// Upper bound of the step length [s], the least of
+/// - the stable step times Tuning::step_safety,
+/// - Settings::step_size if it is given, otherwise 1/120 s if the world has rigid or implicit bodies,
+/// - Settings::implicit_step if it is above 0 and the world has implicit bodies.
 Real longest_allowed_step(const Model& model, Index* body = nullptr);
 /// Upper bound that the step length would have after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
@@ -149,16 +151,17 @@ Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const 
 /// step much shorter than the shortest stable step at rest of all bodies, and if this reduces the computing time.
 /// Returns the energy that the inertia of new clusters adds to the balance [J].
 Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum);
-/// Must be called at the end of a round, a fixed number of steps. During these steps, the stable steps of all bodies
-/// were evaluated. Puts the evaluated stable steps into use, and makes elements implicit like evaluate_stable_steps.
-/// Returns the energy that the inertia of new clusters adds to the balance [J].
+/// Puts into use the stable steps that were evaluated, body by body, during the steps of a round. Must be called at its
+/// end. Makes elements implicit like evaluate_stable_steps, and returns the same energy [J].
 Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum);
 /// Must be called before each step. Copies the shapes of the bodies whose stable steps are evaluated next, in parallel
 /// with this step and perhaps later ones. Each body gets its turn once in a round of `round` steps.
 void store_shapes(Executor& executor, Model& model, std::uint64_t round);
-/// Computes StepWatch::first_piece. It divides the evaluation of stable steps into pieces, which are spread evenly over
-/// the steps of a round. With ranks, the first call is collective, and so is the call after a round in which elements
-/// of some rank became implicit.
+/// Counts the pieces into which the computation of stable steps is divided, so that it can be spread evenly over the
+/// steps of a round. The result is StepWatch::first_piece: for each body, the number of pieces of all bodies before it.
+///
+/// With ranks, two kinds of calls are collective, which means that all ranks must make them together: the first call,
+/// and the call after a round in which elements of some rank became implicit.
 void count_pieces(WorldState& world);
 
 /// Updates the matrices of clusters whose elements have stiffened. Otherwise the stage stiffen_clusters would do this
@@ -188,8 +191,10 @@ bool clusters_allowed(const Settings& settings);
 /// estimated computing time of a simulated second is smallest.
 void settle_clusters(Model& model, Column<Real>& stiffness_sum);
 /// Makes those elements of a body implicit that are unstable at the step length `step` [s]. Returns false, and changes
-/// nothing, in three cases: the body must not have clusters; the clusters would have too many nodes or add too much
-/// inertia; or a simulated second costs less computing time with steps of the present length `present_step` [s].
+/// nothing, if
+/// - the body must not have clusters,
+/// - the clusters would have too many nodes or add too much inertia, or
+/// - a simulated second costs less computing time with steps of the present length `present_step` [s].
 bool make_implicit(Model& model, std::size_t body, Real step, Real present_step, std::span<Real> stiffness_sum);
 /// Kinetic energy of the additional inertia that implicit elements give their nodes [J].
 Real added_energy(const Model& model);
@@ -205,9 +210,9 @@ struct StepPlan {
     Real h = 0;       // s
     Real steps = 1;   // number of steps of length `h` in the planned interval, this step included
     Real stable = 0;  // longest step that stability and the settings allow (longest_allowed_step) [s]
-    // Length `stable`, or less if a body with a joint or tie would rotate too far in such a step (step_of_turns) [s].
-    // An attempt is not repeated with a shorter step if its step is shorter than a certain fraction of this length
-    // (most_shortening in transaction.cpp).
+    // Length `stable`, or a shorter one, so that no body with a joint or tie rotates too far (step_of_turns) [s].
+    // Attempts are repeated with shorter steps down to a certain fraction of this length (most_shortening in
+    // transaction.cpp).
     Real regular = 0;
     // row in BodyTable of the body with the shortest stable step; no_index if this step comes from Model::of_ranks
     Index stiffest = no_index;
@@ -218,8 +223,8 @@ StepPlan plan_step(const Model& model, Real remaining, Real fast_limit);
 /// Greatest angular speed of a body with a joint or tie [rad/s]. `body`: set to the row of this body in BodyTable.
 Real fastest_spin(const Model& model, Index* body = nullptr);
 /// Longest step in which no body with a joint or tie rotates by more than a small angle, but at most `shorter_than`
-/// [s]. `fastest`: set only if the result is less than `shorter_than`. Its value is then the row in BodyTable of the
-/// body that rotates fastest; no_index if Model::of_ranks gives the speed of this body.
+/// [s]. `fastest`: set only if the result is shorter, to the row in BodyTable of the body that rotates fastest;
+/// no_index if Model::of_ranks gives its speed.
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);
 /// True if a force that depends on the motion acts on an implicit body, or a cable runs over one. Such forces must be
 /// evaluated in every step, so implicit bodies then take no long steps.
@@ -237,8 +242,8 @@ void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 // leave_out_step.cpp
 
 /// True if the planned step would change nothing but the time: all bodies sleep, no script moves anything, and no
-/// contacts or speeds remain from earlier steps. Before it returns true, it computes the motion of colliders and held
-/// nodes in this step, because the stages that do this are skipped.
+/// contacts or speeds remain from earlier steps. It then also computes the motion of colliders and held nodes in this
+/// step, because the stages that do this are skipped.
 bool nothing_moves(WorldState& world);
 /// Sets the contact and attachment forces to zero after a skipped step, in which no stage measured them.
 void forget_forces_of_step(const Model& model, ForceScratch& forces);
@@ -258,13 +263,13 @@ void find_self_crossings(Executor& executor, Model& model, Real time, Column<Ind
 /// Makes a drift of leapfrog, forwards or backwards in time: moves bodies with their present velocities, and colliders
 /// and attachments along their scripts. Afterwards the positions are `offset` seconds ahead of the velocities.
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
-/// Must be called after positions were restored. Computes BodyTable::displacement again from the restored positions. It
-/// is the largest displacement of a node, relative to the moving frame of the body, since this column was last zero.
-/// NodeTable::displacement_origin contains the positions at that time.
+/// Computes BodyTable::displacement again after positions were restored. It is the largest displacement of a node,
+/// relative to the moving frame of the body, since this column was last zero. NodeTable::displacement_origin contains
+/// the positions at that time.
 void measure_displacement_again(Executor& executor, Model& model, SearchMemory& search);
-/// Adds to ColliderTable::travel an upper bound of the distance that points of a collider move in the time `seconds`
-/// [s] at its present velocity. Only points near a body count. `extent`: for each collider, the largest distance of
-/// these points from its origin [m]. measure_displacement measures the corresponding distances of bodies.
+/// Adds to ColliderTable::travel an upper bound of the path of those points of a collider that are near a body, in the
+/// time `seconds` [s] at its present velocity. `extent`: for each collider, the largest distance of these points from
+/// its origin [m]. measure_displacement does this for bodies.
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
 
 // watch_problems.cpp

@@ -20,21 +20,23 @@ constexpr std::size_t inline_work = 1024;
 /// contacts of the following attempts. If surfaces cross in the last of these attempts too, the step is shortened.
 constexpr int tries_at_one_length = 4;
 
-/// A step in which surfaces cross is repeated with half its length, if it is longer than StepPlan::regular divided by
-/// this factor. In the next steps the length grows again (step_growth). Step lengths that are predicted from the speed
-/// of deformation have the same lower limit. A limit for the number of halvings in one step would not suffice: a few
-/// halvings in each of many steps would make the steps shorter and shorter.
+/// A step in which surfaces cross is halved if it is longer than StepPlan::regular divided by this factor. In the next
+/// steps the length grows again (step_growth). Step lengths predicted from the speed of deformation have the same lower
+/// limit.
+///
+/// A limit for the halvings in one step would not suffice: a few in each of many steps would add up.
 constexpr Real most_shortening = 128;
 
-/// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length, if
-/// it is longer than StepPlan::regular divided by this factor. The factor must be large: material that is squeezed out
-/// between a rigid body and held nodes moves several hundred times as fast as the rigid body.
+/// A step that deforms an element too fast, or for which Newton's method fails, is shortened if it is longer than
+/// StepPlan::regular divided by this factor. The factor must be large: material squeezed out between a rigid body and
+/// held nodes moves several hundred times as fast as the rigid body.
 constexpr Real most_shortening_against_speed = 1024;
 
-/// A step that turns elements inside out is repeated with half its length, if it is longer than StepPlan::regular
-/// divided by this factor. Otherwise the inversion is accepted. In thrown meshes, halving prevents a third of the
-/// inversions. In squeezed meshes it prevents none, but crushed bodies gain less energy. With the factor 2 instead of
-/// 4, or with a step length that grows faster afterwards (step_growth), a ball shot at a wall gains a third more
+/// A step that turns elements inside out is halved if it is longer than StepPlan::regular divided by this factor.
+/// Otherwise the inversion is accepted.
+///
+/// In thrown meshes, halving prevents a third of the inversions. In squeezed meshes it prevents none, but crushed
+/// bodies gain less energy. With the factor 2, or with a larger step_growth, a ball shot at a wall gains a third more
 /// energy.
 constexpr Real most_shortening_against_inversion = 4;
 
@@ -47,9 +49,8 @@ constexpr Real fast_growth = 1.5;
 /// Fraction of the largest allowed change of strain for which the next step is planned. It is below 1 because the next
 /// step may deform elements faster than the present one.
 constexpr Real strain_margin = 0.9;
-/// Limits for the length of a repeated step, after an attempt that deformed an element too fast, as fractions of the
-/// length of this attempt. longest_repeat: upper limit, so each repetition shortens the step at least by a tenth.
-/// shortest_repeat: lower limit, so no repetition shortens the step to less than a quarter.
+/// Limits of the length of a repeated step, as fractions of the attempt that deformed an element too fast.
+/// longest_repeat is the upper limit, so that each repetition shortens the step. shortest_repeat is the lower limit.
 constexpr Real longest_repeat = 0.9, shortest_repeat = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -67,14 +68,13 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
 }
 
 /// Returns the kick of a step: the time for which forces act on velocities [s]. With leapfrog it is the length of the
-/// step. With symplectic Euler the velocities are half a step behind the positions, so the kick lasts from the middle
-/// of the last step to the middle of this step (docs/methods/time_stepping.md 1.5).
+/// step. With symplectic Euler it lasts from the middle of the last step to the middle of this step
+/// (docs/methods/time_stepping.md 1.5).
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
-    // If the last step was much longer than the present stable step, a body was added or has become stiffer. For this
-    // body, a kick from the middle of the last step would be too long. So the last step counts with at most `growth`
-    // times the stable step.
+    // The last step counts with at most `growth` times the present stable step. If it was longer, a body was added or
+    // has become stiffer since, and the kick would be too long for this body.
     constexpr Real growth = 2;
     if (before > growth * plan.stable)
         before = std::min(before, growth * model.tuning.step_safety * stable_step(model));
@@ -125,12 +125,12 @@ bool run_stages(WorldState& world) {
 }
 
 /// Makes the element rotations and spring strains that this step has computed the input of the next step. If no body
-/// sleeps, whole columns are swapped, which is faster than copying rows. The swap also exchanges rows that the step has
-/// not computed. This does no harm: for unstrained bodies both columns have equal values, and rows of led ghosts
-/// (copies of bodies on which another rank computes the forces) are never read.
+/// sleeps, whole columns are swapped, which is faster than copying rows.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
+        // Rows that the step has not computed are swapped too. For unstrained bodies both columns have equal values,
+        // and rows of led ghosts (copies of bodies on which another rank computes the forces) are never read.
         elements.rotation.swap(elements.rotation_next);
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
@@ -148,10 +148,9 @@ void flow(WorldState& world) {
     world.scratch.findings.plastic = yield_blocks(world, world.model.awake_elements(), world.model.all_blocks());
 }
 
-/// Clears the mark `unstrained` of all bodies in contact. A body with this mark counts as undeformed, and its elements
-/// are not computed. Must be called after a step in which contacts pushed bodies out of overlaps (RegionTable::pushed).
-/// Such a push changes positions but not velocities. In most steps find_unstrained compares only the velocities of a
-/// marked body, so it would not notice the strain.
+/// Clears the mark `unstrained` of all bodies in contact, so that their elements are computed again. Must be called
+/// after a step in which contacts pushed bodies out of overlaps (RegionTable::pushed). Such a push changes no
+/// velocities, which are all that find_unstrained compares in most steps.
 void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
     for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
         for (const Index body : *column)
@@ -335,9 +334,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     world.cache.crossings.last_attempt = attempt.letting_through;
     world.cache.crossings.beyond_lists = false;
     world.cache.crossings.found_count = 0;
-    // Largest number of repetitions of an attempt with longer contact lists. Several may be needed: contacts found in
-    // the longer lists change the motion, which may then exceed these lists too. After the last repetition, features
-    // that come near enough to cross without being in the lists count as crossings.
+    // Largest number of repetitions of an attempt with longer contact lists. Contacts found in the longer lists change
+    // the motion, which may exceed these lists too. After the last repetition, features that come near enough to cross
+    // without being in the lists count as crossings.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);

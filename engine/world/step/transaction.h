@@ -18,9 +18,11 @@ struct StepPlan;
 struct WorldState;
 
 /// Outcome of one attempt at a step of length h. After every outcome but `committed`, the world is again in its state
-/// before the attempt. The regular step is StepPlan::regular. A body is too fast if an element of it deforms too much
-/// in the step, and unsolved if Newton's method fails for it. Region labels name a contact region in the same way on
-/// all ranks; ranks exchange them in rounds (RegionLabel).
+/// before the attempt. Terms of the diagram:
+/// - regular step: StepPlan::regular
+/// - too fast: a body with an element that deforms too much in the step
+/// - unsolved: a body for which Newton's method fails
+/// - region labels: names of contact regions that are equal on all ranks, which exchange them in rounds (RegionLabel)
 ///
 ///     attempt -- good ------------------------------------------------------------> committed
 ///      |---- a rank lacks bodies or region labels of other ranks ----------------> again_over_ranks --------> attempt
@@ -35,7 +37,7 @@ enum class StepOutcome {
     committed,
     again_over_ranks,         // the same attempt again, after an exchange of bodies or with more rounds of labels
     again_with_longer_lists,  // the contact lists lacked features that might cross; the next attempt has longer lists
-    again_with_crossings,     // crossing features are contacts of the next attempt with the same length
+    again_with_crossings,     // surfaces crossed; the next attempt, of equal length, has contacts where they did
     again_shorter,            // the next attempt is half as long, or as long as the rate of deformation allows
     again_letting_through,    // the next attempt accepts crossings and inversions, and reports them
     refused,                  // the step cannot be taken; the cause is in world.scratch.findings
@@ -83,12 +85,12 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
 ///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they depend on the shapes at the start
-///                                                                      of the attempt, which do not change. With
-///                                                                      leapfrog, drift_to changes the shapes, so a
-///                                                                      copy from the start of the call is restored.
-///                                                                      If bodies move between ranks, the next attempt
-///                                                                      computes the forces again, so a copy from
-///                                                                      before the first computation is restored
+///                                                                      of the attempt, which do not change. But if
+///                                                                      - drift_to (leapfrog) changes the shapes:
+///                                                                        a copy from the start of the call
+///                                                                      - bodies move between ranks, so that forces
+///                                                                        are computed again: a copy from before
+///                                                                        their first computation
 ///     pairs, and candidates in them             find_candidates        nothing: results of a search for the positions
 ///                                                                      at the start of the step stay valid
 ///     search.memory.body_unmeasured             find_candidates        at the end of the call, bodies whose speeds no

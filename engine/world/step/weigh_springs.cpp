@@ -47,8 +47,8 @@ void weigh_springs(Model& model) {
 namespace {
 
 /// Part of the inverse mass of an anchor (end of a spring) that comes from the rigid motion of its body: upper bound
-/// over all directions of the force [1/kg]. The result is 0 for a held body. It is also 0 for a body that is neither
-/// rigid nor implicit, because such a body has no separate rigid motion; all of its motion is that of its nodes.
+/// over all directions of the force [1/kg]. It is 0 for held bodies, and for explicit bodies, which move by their nodes
+/// only.
 Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std::size_t s) {
     if (anchors.body[s] == no_index) return 0;
     const auto body = static_cast<std::size_t>(anchors.body[s]);
@@ -61,9 +61,9 @@ Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std:
 
 }  // namespace
 
-// Squared frequencies are eigenvalues of M^-1/2 K M^-1/2. A spring of stiffness k between anchors on two bodies, with
-// the inverse masses u and v, adds a matrix whose blocks have the norms k u, k sqrt(u v) and k v. The block form of
-// Gershgorin's theorem shows that the largest squared frequency grows by at most the largest sum of norms in a row.
+// A spring of the stiffness k has anchors with the inverse masses u and v on two bodies. It raises the squared circular
+// frequencies of the first body by at most k (u + sqrt(u v)), and those of the second by k (v + sqrt(u v)) (block form
+// of Gershgorin's theorem, docs/methods/springs.md 2).
 void add_spring_rates(Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     for (std::size_t s = 0; s < springs.size(); ++s) {
@@ -78,9 +78,9 @@ void add_spring_rates(Model& model, std::span<Real> of_body) {
     }
 }
 
-// Raises the bound of each body to the largest rate of a single damper on it. The rates of several dampers on one mass
-// are not summed. Each rate is instead computed as if its damper had only an equal share of the mass. This suffices:
-// with n dampers of the coefficients c_i on the mass m, the largest n c_i / m is at least the sum of all c_i / m.
+// Raises the bound of each body to the largest rate of a single damper on it, computed as if n dampers on one mass had
+// equal shares of it. This suffices: for the coefficients c_i and the mass m, the largest n c_i / m is at least the sum
+// of all c_i / m.
 void bound_spring_damping(const Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     const auto divided = [&](const AnchorMass& mass, const AnchorInputs& anchors, std::size_t s) {

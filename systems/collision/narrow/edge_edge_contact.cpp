@@ -74,9 +74,12 @@ public:
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // Slack of docs/methods/collision.md 4.5, with the widths w1, w2 of the faces and the angle b between their
-        // normals: (2 min_bend - b) w1 w2 / (w1 + w2) / 2. The small angle b is replaced by its sine, fall /
-        // other_width, which is equal for both orders of the faces up to rounding.
+        // Slack at the middle of the edge (see slack()): distance by which an edge that crosses here may come nearer
+        // than the contact distance. With the widths w1, w2 of the faces and the angle b between their normals, it is
+        // (2 min_bend - b) w1 w2 / (w1 + w2) / 2 (docs/methods/collision.md 4.5).
+        //
+        // The small angle b is replaced by its sine, fall / other_width, which is equal for both orders of the faces
+        // up to rounding.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;

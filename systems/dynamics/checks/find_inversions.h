@@ -16,7 +16,8 @@ namespace skerry {
 struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
-    std::span<const ElementLane> tetrahedron_leeway;   // above 1 if an implicit element covers it; empty: 1
+    // above 1 if an implicit element averages over the tetrahedron (find_leeway()), else 1; empty: 1 for all
+    std::span<const ElementLane> tetrahedron_leeway;
     std::span<const std::uint8_t> tetrahedron_sliver;  // empty if there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
@@ -49,8 +50,7 @@ struct Inversions {
     Index count = 0;
     Index body = no_index;         // body of the first inverted tetrahedron: row of BodyTable
     Index tetrahedron = no_index;  // first tetrahedron that the step inverts: lane t % 8 of block t / 8
-    // True if a body that had no inverted tetrahedron before the step gets one. Slivers (tetrahedra of negligible
-    // volume) and tetrahedra that implicit elements cover do not count.
+    // True if harmful inversions (InversionPart::is_harmful) occur in a body that had none before the step.
     bool is_first_of_body = false;
 };
 
@@ -61,7 +61,9 @@ struct InversionPart {
     Real uninverted_until = 0;  // travel of the body up to which no tetrahedron of these blocks can invert [m]
     // `count`: number of tetrahedra that the step inverts. `tetrahedron`: the first of them.
     Index count = 0, tetrahedron = no_index;
-    // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
+    // True if one of the inverted tetrahedra is harmful. Slivers (tetrahedra of negligible volume) are harmless. So are
+    // tetrahedra over which an implicit element averages its deformation gradient, because implicit elements never make
+    // a step unstable.
     bool is_harmful = false;
 };
 

@@ -67,9 +67,9 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
 }
 
 /// Adds the impulses on held nodes that come from the added inertia of the implicit elements (docs/methods/clusters.md
-/// 1). An element has beta = inertia_factor(), the volume V, the shape gradients g, and the assumed modulus c. A
-/// velocity change dv_k of its moving node k requires the impulse beta c V (g_k.g_n) dv_k on each held node n. Velocity
-/// changes by damping do not count.
+/// 1). An element has beta = inertia_factor(), the volume V, and the assumed modulus c. Let g_k be the gradient of its
+/// shape function of node k. A velocity change dv_k of its moving node k requires the impulse beta c V (g_k.g_n) dv_k
+/// on each held node n. Velocity changes by damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_factor(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);

@@ -20,7 +20,8 @@ struct ClusterInputs {
 
 /// Builds the clusters, which are sets of moving nodes that implicit elements connect, and inverts their inertia
 /// matrices A (docs/methods/clusters.md 1). M is the diagonal matrix of lumped masses and `step` is body_cluster_step.
-/// Implicit element e has the assumed modulus c_e, the volume V_e, and the shape gradient g_k at node k:
+/// Implicit element e has the assumed modulus c_e and the volume V_e, and g_k is the gradient of its shape function of
+/// node k:
 ///     A_kl = M_kl + beta sum_e c_e V_e g_k.g_l,     beta = (step/1.8)^2 (inertia_factor()).
 /// Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);

@@ -59,9 +59,9 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
     return least_moment_of(second);
 }
 
-/// Moment of inertia 2 beta c V that an implicit element adds in a rigid rotation about any axis [kg m^2], with the
-/// assumed modulus c, the volume V, and beta = inertia_factor(step). The velocity field
-/// w x r of the angular velocity w adds the kinetic energy beta c V |grad(w x r)|^2 / 2 = beta c V |w|^2.
+/// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. It is 2 beta c V, with
+/// the assumed modulus c, the volume V, and beta = inertia_factor(step). The reason: the velocity field w x r of the
+/// angular velocity w adds the kinetic energy beta c V |grad(w x r)|^2 / 2 = beta c V |w|^2.
 Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_factor(step) * modulus * volume;
 }

@@ -38,14 +38,14 @@ struct ImplicitShare {
     bool too_many = false;
 };
 
-/// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths. Data
-/// that do not depend on the step length are computed once, when they are first needed. All constructor arguments must
-/// outlive the search, and only the output columns may change meanwhile. Sequential.
+/// Searches for the implicit elements of a body at fixed node positions. find() can be called for any number of step
+/// lengths. Data that do not depend on the step length are computed once, when they are first needed. All constructor
+/// arguments must outlive the search, and only the output columns may change meanwhile. Sequential.
 ///
-/// find() changes the mass shares in rounds. The rigorous bound on the stable step of an element needs 9x9 matrices, so
-/// most rounds only estimate how the step changes with the mass shares. It is nearly proportional to 1/sqrt(T), with
-/// the trace T of sum_k g_k g_k^T / m_k, the shape gradient g_k at node k, and the element's part m_k of the mass of
-/// node k.
+/// find() divides the mass of each node among its elements again and again. The rigorous bound on the stable step of an
+/// element needs 9x9 matrices, so most rounds only estimate how the step changes with the divided masses. Let m_k be
+/// the element's part of the mass of node k, and g_k the gradient of the shape function of node k. The step is nearly
+/// proportional to 1/sqrt(T) with T = sum_k |g_k|^2 / m_k.
 class ImplicitSearch {
 public:
     /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
@@ -71,7 +71,7 @@ private:
         // `node`: row of NodeTable minus first_node_. `element`: lane of the element, counted through all blocks of the
         // body.
         Index node, element;
-        Real size;  // squared length of the shape gradient [1/m^2]
+        Real size;  // squared length of the gradient of the element's shape function of this node [1/m^2]
     };
     // Bits of marks_: `near_unstable` marks the nodes of elements that are unstable at the required step,
     // `near_implicit` the nodes of implicit elements.

@@ -10,8 +10,10 @@
 namespace skerry {
 
 /// Writes the leeway of each tetrahedron: a factor on the allowed change of the deformation gradient in a step. The
-/// factor is `leeway_of_implicit` for a tetrahedron that an implicit element covers, else 1. `tetrahedra` lists the
-/// tetrahedra that each element covers, lane by lane.
+/// factor is `leeway_of_implicit` for a tetrahedron over which an implicit element averages its deformation gradient,
+/// else 1.
+/// - `tetrahedra`: for each element, lane by lane, the tetrahedra over which it averages.
+/// - `modulus`: assumed modulus of an implicit element; 0 for an explicit element [Pa].
 void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real leeway_of_implicit,
                  std::span<ElementLane> leeway);
 

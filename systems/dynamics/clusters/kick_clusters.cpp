@@ -110,9 +110,10 @@ template <std::size_t Rows>
              to);
 }
 
-/// Multiplies `Rows` complete rows, from row `first_row` on, by the vectors `kick`, and stores the sums. The rows cross
-/// the diagonal in the complete tile that begins at row and column `first`. This tile contains both triangles, so its
-/// entries are used only once.
+/// Multiplies `Rows` rows of a symmetric matrix, from row `first_row` on, by the vectors `kick`, and stores the
+/// products. The rows cross the diagonal in the tile (8x8 block) that begins at row and column `first`:
+/// - Entries left of this tile are used twice, also for the entries mirrored at the diagonal (add_rows_and_columns()).
+/// - In this tile the entries on both sides of the diagonal are read, so each is used once.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -130,8 +131,8 @@ void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, 
     store_sums(rows.z, sum.component[2] + first_row);
 }
 
-/// Multiplies `Rows` rows, from row `first_row` on, by the vectors `kick`, and stores the sums. The rows cross the
-/// diagonal in the last, incomplete tile, which begins at row and column `first`.
+/// Version of add_rows_of_tile() for the last rows if they do not fill a tile. The incomplete tile with the diagonal
+/// begins at row and column `first`, and has fewer than 8 rows and columns.
 template <std::size_t Rows>
 void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t first_row,
                      const ByComponent& kick, const ByComponent& sum) {

@@ -34,8 +34,9 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
     for (; i < to.size(); ++i) to[i] += factor.x() * x[i] + factor.y() * y[i] + factor.z() * z[i];
 }
 
-/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1. Row k of G is the shape gradient
-/// of an element at node k. Woodbury's identity subtracts U (1/weight + G^T U)^-1 U^T from A^-1, with U = A^-1 G.
+/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1. Row k of G is the gradient of an
+/// element's shape function of node k. Woodbury's identity subtracts U (1/weight + G^T U)^-1 U^T from A^-1, with
+/// U = A^-1 G.
 void add_to_inverse(const BlockNodes& block_nodes, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
@@ -88,7 +89,8 @@ Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
 }
 
 /// Keeps the momentum of the deformation of an element constant while its inertia increases by `weight`
-/// (docs/methods/clusters.md 6). With the rate F' of the deformation gradient and the shape gradients g_k, adds
+/// (docs/methods/clusters.md 6). F' is the rate of the deformation gradient, and g_k the gradient of the shape function
+/// of node k. Adds
 /// - the forces -weight F' g_k / kick, which act for the time `kick`, to the forces of the element on its nodes k,
 /// - the impulse weight F' to its viscous impulse.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,

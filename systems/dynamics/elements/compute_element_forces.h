@@ -155,9 +155,10 @@ struct ElementMemory {
 /// Computes the forces of the elements on their nodes, and sums the forces over each patch. Returns the energy that the
 /// dashpots of Maxwell elements dissipate [J]. `kick`: time for which forces act [s]. Parallel over patches.
 ///
-/// With the node positions x_k and the gradients g_k at rest, the deformation gradient of an element is
-/// F = sum_k (x_k - x_0) (x) g_k, with outer products (x). It determines the first Piola-Kirchhoff stress P. With the
-/// rest volume V, the forces on the nodes are f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...).
+/// Let x_k be the position of node k of an element, and g_k the gradient of the shape function of this node at rest.
+/// The deformation gradient of the element is F = sum_k (x_k - x_0) (x) g_k, with outer products (x). It determines the
+/// first Piola-Kirchhoff stress P. With the rest volume V, the forces on the nodes are f_k = -V P g_k and
+/// f_0 = -(f_1 + f_2 + ...).
 ///
 /// - Sums run block by block and lane by lane, so that the bits do not depend on the number of workers.
 /// - Laws with a corotational frame (the rotation nearest to F) start the search for it from `rotation` and write it to

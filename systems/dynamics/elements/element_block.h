@@ -261,9 +261,9 @@ template <class T>
     return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
 }
 
-/// Calls take(k, part, f_k) with the forces on all nodes k. With the rest volume V, the stress P, the gradients g_k at
-/// rest and Q = -V P, the forces are f_k = Q g_k and f_0 = -(f_1 + f_2 + ...). All parts of one node come before the
-/// next node, so that the order of sums does not depend on the register width.
+/// Calls take(k, part, f_k) with the forces on all nodes k: f_k = Q g_k and f_0 = -(f_1 + f_2 + ...). Here g_k is the
+/// gradient of the shape function of node k at rest. Q = -V P, with the rest volume V and the stress P. All parts of
+/// one node come before the next node, so that the order of sums does not depend on the register width.
 template <class Take>
 [[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& Q, const BlockNodes& block,
                                                   Take&& take) {

@@ -12,8 +12,9 @@
 
 namespace skerry {
 
-/// Lists of the tetrahedra that each element of a body covers: it averages the deformation gradient over them. The list
-/// is empty for an unused lane and for a guard (inversion barrier). Tetrahedra are numbered within the body.
+/// Lists of the tetrahedra that each element of a body covers. An element covers the tetrahedra over which it averages
+/// the deformation gradient. The list is empty for an unused lane and for a guard (inversion barrier). Tetrahedra are
+/// numbered within the body.
 struct ElementCover {
     std::span<const ElementPart> part;  // by block: part of the stress of its elements
     RaggedView<Index> tetrahedra;       // by lane: tetrahedra that its element covers

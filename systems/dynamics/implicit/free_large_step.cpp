@@ -119,9 +119,9 @@ Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     Real kinetic = 0;
     for (std::size_t n = 0; n < body.count; ++n)
         kinetic += stiff.mass(body.order_index(n)) / 2 * body.rows(out.velocity_next)[n].squaredNorm();
-    // Growth of the elastic energy in the step by linear elasticity [J]. This growth has been subtracted from the
-    // damped energy of the step. It is added again here, because end_in_shape() subtracts the growth by the material
-    // laws instead.
+    // Growth of the elastic energy in the step by linear elasticity [J]. The damped energy that the time integration
+    // dissipates has been computed with this growth. end_in_shape() subtracts the growth by the material laws from its
+    // argument, so the linear growth is added there: the sum corrects the damped energy.
     const Real linear = stiff.elastic_energy(body.rows(out.displacement_next), false) -
                         stiff.elastic_energy(body.rows(bodies.displacement), false);
     return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);

@@ -249,7 +249,9 @@ private:
     // Velocities A^-1 p by index in the elimination order, with the factored matrix A and the nodal momenta p of a
     // rigid motion of the body. shifts_: unit translations along the three axes. turns_: unit rotations about them.
     std::vector<Mat3> shifts_, turns_;
-    // Inverse of the 6x6 matrix whose columns are the total momentum and angular momentum of each shift and turn.
+    // Inverse of a 6x6 matrix. Each column of the matrix contains the total momentum and angular momentum of the
+    // velocities in one column of shifts_ or turns_. With the inverse, remove_rigid_response() finds the combination of
+    // these velocities that has given momenta.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
     // Inputs and results of the last evaluation in becomes_large_in_order(). evaluated_at_ is empty before the first
     // evaluation, and after one with a strain that is not finite.

@@ -18,7 +18,7 @@ struct ElementList {
     std::vector<Index> node;                        // nodes of each element; the first node is the reference x_0 of F
     std::vector<Vec3> gradient;                     // by entry of `node`, at rest; sum over an element: zero [1/m]
     std::vector<std::size_t> first_tetrahedron{0};  // first entry of element e in tetrahedron; size() + 1 entries
-    std::vector<Index> tetrahedron;                 // tetrahedra that each element covers
+    std::vector<Index> tetrahedron;                 // tetrahedra over which each element averages F; none for barriers
     std::vector<Real> volume;                       // rest volume [m^3]; 0 for inversion barriers
     std::vector<ElementPart> part;
     std::vector<Index> material;  // row of MaterialTable

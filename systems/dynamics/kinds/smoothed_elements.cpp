@@ -1,8 +1,8 @@
 // Elements that average the deformation gradient F over several tetrahedra (docs/methods/elasticity.md 7). Each
-// tetrahedron e contributes a fraction w of its volume V_e to the element, and has the shape gradient g_ek at node k.
-// The element has
-//     the volume                      W   = sum_e w V_e
-//     the shape gradient at node k    g_k = sum_e (w V_e / W) g_ek
+// tetrahedron e contributes a fraction w of its volume V_e to the element. The gradient of its shape function of node k
+// is g_ek. The element has
+//     the volume                                      W   = sum_e w V_e
+//     the gradient of the shape function of node k    g_k = sum_e (w V_e / W) g_ek
 #include <algorithm>
 #include <array>
 

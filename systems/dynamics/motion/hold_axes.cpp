@@ -84,9 +84,13 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         held_impulse[held.entry] += impulse * held.direction;
         sum.impulse += impulse * held.direction;
         sum.flow += std::abs(impulse);
-        // Work of the holding force: the change of kinetic energy, mass * gained * (held.speed - gained / 2), minus the
-        // work of all other forces on the node. The other forces have the impulse mass * gained - impulse. Their work
-        // is this impulse times `mean_speed`: the end velocity, or with leapfrog (lag = 0) the mean velocity.
+        // Work of the holding force: the change of kinetic energy minus the work of all other forces on the node. The
+        // kinetic energy changes by mass * gained * (held.speed - gained / 2). The other forces have the impulse mass *
+        // gained - impulse.
+        //
+        // The work of the other forces is this impulse times `mean_speed`, the displacement of the node in the step
+        // divided by h. In symplectic Euler it is the velocity at the end of the step. With leapfrog (lag = 0) it is
+        // the mean of the velocities at the start and the end.
         const Real mean_speed = lag == 0 ? held.speed - gained / 2 : held.speed;
         sum.work += impulse * mean_speed;
         if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;

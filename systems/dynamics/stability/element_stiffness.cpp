@@ -86,8 +86,8 @@ public:
             for (int c = 0; c <= r; ++c) A_.a[r][c] += s * x[r] * x[c];
     }
 
-    /// Adds the map X -> s R X^T R to H. Block (p, q) of the 9x9 matrix A grows by s times the dyad of columns q and p
-    /// of R L.
+    /// Adds the map X -> s R X^T R to the tangent H of the material law. The 3x3 block (p, q) of the 9x9 matrix A grows
+    /// by s times the dyad of columns q and p of R L, with the Cholesky factor L of this object.
     template <class Matrix>
     void add_turned_transpose(const T& s, const Matrix& R) {
         const LaneMat3<T> RL = multiply(R, L_);
@@ -98,8 +98,9 @@ public:
                     for (int k = 0; k < (p == q ? i + 1 : 3); ++k) A_.a[3 * p + i][3 * q + k] += s * x[q][i] * x[p][k];
     }
 
-    /// Adds s d(cof F)/dF to H. e_m is column m of F cof(L), and [e]x the matrix of the cross product with e. Block
-    /// (p, q) of the 9x9 matrix A grows by
+    /// Adds s times the derivative d(cof F)/dF of the cofactor matrix to the tangent H of the material law. Let e_m be
+    /// column m of F cof(L), with the Cholesky factor L of this object. [e]x is the matrix of the cross product with e.
+    /// The 3x3 block (p, q) of the 9x9 matrix A grows by
     ///     -s [e_m]x    if (p, q, m) is a cyclic permutation of (0, 1, 2)
     ///      s [e_m]x    if (q, p, m) is one
     void add_cofactor_slope(const T& s, const LaneMat3<T>& F) {

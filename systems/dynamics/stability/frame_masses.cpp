@@ -24,8 +24,8 @@ namespace skerry {
 
 namespace {
 
-// Estimated ratio of the step with frame masses to the step that the bounds of single elements allow. It decides how
-// much the springs of Maxwell elements relax in a step (RestModuli).
+// Estimated ratio of two stable steps of a body: the step with frame masses, and the shorter step by the frequencies
+// that elements have alone (see RestModuli). It decides how much the springs of viscoelastic materials relax in a step.
 constexpr Real longer_in_frame = 2;
 
 // The sum is written out term by term, so that the bits do not depend on how a library vectorises it.

@@ -1,9 +1,10 @@
-// Chooses the matrix Q of the mass form G Q^-1 G^T of each element (docs/methods/stable_step.md 2.3). G contains the
-// gradients of the element at rest, V is its volume.
+// Chooses the matrix Q of the mass form G Q^-1 G^T of each element (docs/methods/stable_step.md 2.3). This form is the
+// part of the nodal masses that the element gets. Row k of G is the gradient of the shape function of node k at rest. V
+// is the volume of the element.
 //
-// Every positive definite matrix Z gives a bound V G W G^T on the stiffness of an element at rest, with Lame's mu and
-// lambda and W = 2 mu I + lambda tr(Z) Z^-1. Q is proportional to (V W)^-1. A good Z is the square root of the mean of
-// grad u grad u^T over the highest modes u. Rounds of iteration find Z and these modes together.
+// Let W be the matrix 2 mu I + lambda tr(Z) Z^-1, with Lame's mu and lambda and any positive definite matrix Z. Then
+// V G W G^T bounds the stiffness of the element at rest. Q is proportional to (V W)^-1. A good Z is the square root of
+// the mean of grad u grad u^T over the highest modes u. Rounds of iteration find Z and these modes together.
 //
 // The bound is the same for x, y and z, so the matrix that adds it up over all elements is a third as wide as the true
 // stiffness matrix. The eigenvalues of this matrix are sharper bounds than those of single elements.
@@ -58,8 +59,8 @@ Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-// Estimated ratio of the stable step with mass forms to the stable step by the bounds of single elements. It decides
-// how much the springs of Maxwell elements relax in a step (RestModuli).
+// Estimated ratio of two stable steps of a body: the step with mass forms, and the shorter step by the frequencies that
+// elements have alone (see RestModuli). It decides how much the springs of viscoelastic materials relax in a step.
 constexpr Real longer_by_forms = 1.5;
 
 // Number of blocks of elements above which a body counts as large and gets only one round of iteration. Its step is
@@ -74,10 +75,12 @@ struct ElementGroup {
     std::vector<Index> node{};
     // bandwidth: 1 + greatest difference of the indices in `node` of two nodes of an element
     std::size_t width = 0;
-    std::vector<Real> mass{};      // share of the group in the mass of each of its nodes [kg]
-    std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T
-    std::vector<Real4> vector{};   // by node: values of four approximate highest modes
-    Real highest = 0;              // lower bound on the highest eigenvalue of the group [1/s^2]
+    std::vector<Real> mass{};  // share of the group in the mass of each of its nodes [kg]
+    // Diagonal of the sum of the bounds V G W G^T on the stiffness of the elements e of the group. The gradients G of
+    // an element, its volume V and W are those of the head of the file.
+    std::vector<Real> diagonal{};
+    std::vector<Real4> vector{};  // by node: values of four approximate highest modes
+    Real highest = 0;             // lower bound on the highest eigenvalue of the group [1/s^2]
 };
 
 class FormSearch {
@@ -157,7 +160,10 @@ public:
         return bound;
     }
 
-    /// Computes Q from the weights V W and the bound: Q = bound (V W)^-1.
+    /// Computes the matrix Q of the mass form of each element from its weight V W (see weigh()).
+    /// - Explicit element: Q = bound (V W)^-1. `bound`: result of bound().
+    /// - Implicit element: Q is the unit matrix times form_of_implicit.
+    /// - Unused lane (volume 0): Q is zero.
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
@@ -189,8 +195,8 @@ private:
                 if (elements_.volume[b][l] > 0) visit(b, l, elements_.nodes_of(b));
     }
 
-    /// Computes the weights V W = V (2 mu I + lambda tr(Z) Z^-1), with the symbols of the head of the file; zero for
-    /// implicit elements.
+    /// Computes the weight V W of each explicit element. V is its volume. With Lame's mu and lambda and the present
+    /// matrix Z in form_, W = 2 mu I + lambda tr(Z) Z^-1. The weight of implicit elements is zero.
     void weigh() {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const auto [shear, volumetric] = moduli_.moduli(first_block() + i);
@@ -215,7 +221,8 @@ private:
         }
         return {along_x, along_y, along_z};
     }
-    /// Adds the product of the stiffness sum_e G V W G^T with the vectors to product_.
+    /// Adds to product_ the products of the iterated vectors with sum_e G V W G^T, a bound on the stiffness matrix. G
+    /// contains the gradients of element e, and V W is its weight.
     void add_product(Range blocks) {
         for_each_element(blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
             const ElementForm& w = weight_[b - first_block()];
@@ -365,8 +372,8 @@ private:
         return highest;
     }
 
-    /// Data of the matrix M^-1/2 (sum_e G V W G^T) M^-1/2 of a group, with its mass matrix M and the symbols of the
-    /// head of the file.
+    /// Data of the matrix M^-1/2 (sum_e G V W G^T) M^-1/2 of a group, whose highest eigenvalue is sought. M is the mass
+    /// matrix of the group. G contains the gradients of element e, and V W is its weight.
     struct GroupMatrix {
         std::vector<Real> scale;        // inverse square root of the mass, by node along the group [1/sqrt(kg)]
         Ragged<ElementCorner> corners;  // corners of elements at each node along the group

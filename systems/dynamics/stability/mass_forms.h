@@ -18,7 +18,8 @@ inline constexpr Real products_of_group = 4e8;
 inline constexpr Real form_of_implicit = 1e-100;
 
 /// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). An element gets the mass
-/// form G Q^-1 G^T from its nodes, where row k of G is the gradient of node k. Sequential, about 10 us per tetrahedron.
+/// form G Q^-1 G^T from its nodes. Row k of G is the gradient of the shape function of node k. Sequential, about 10 us
+/// per tetrahedron.
 ///
 /// A Cholesky decomposition verifies that the sum of these forms is at most diag(mass), the matrix of the nodal masses.
 /// The bound on the stable step that follows is valid for every shape, and sharp for the rest shape.

@@ -25,9 +25,11 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Moduli of explicit elements at rest, including the springs of their Maxwell elements. The longer the step, the more
-/// these springs relax and the less they contribute. The assumed step is `longer` times the stable step that the bounds
-/// of single elements give.
+/// Moduli of the explicit finite elements of a body at rest. They include the springs of viscoelastic materials
+/// (generalised Maxwell model). The longer the step, the more these springs relax and the less they contribute.
+///
+/// The assumed step is `longer` times a simple estimate of the stable step. This estimate follows from the greatest of
+/// the frequencies that the finite elements would have if each were alone.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
@@ -43,7 +45,7 @@ public:
 private:
     const ElementInputs& elements_;
     Real stiffest_ = 0;  // greatest modulus [Pa]
-    // Step length that determines the relaxed stiffness of the springs of Maxwell elements [s]
+    // Step length that determines the relaxed stiffness of the springs of viscoelastic materials [s]
     Real relaxing_step_ = 0;
 };
 

@@ -10,8 +10,9 @@ namespace skerry {
 
 namespace {
 
-/// Tensor Q of inverse masses of each element: the sum of g_k g_k^T / m_k over the nodes k, with the gradient g_k and
-/// the mass m_k that the element gets from node k.
+/// Tensor Q of inverse masses of each element of a block. The bound on the frequency of an element is computed from it
+/// (element_stiffness.cpp). Let g_k be the gradient of the shape function of node k, and m_k the mass that the element
+/// gets from this node. Q is the sum of g_k g_k^T / m_k over the nodes k of the element.
 LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                     std::span<const Real> mass, std::span<const Real> stiffness_sum) {
     const BlockNodes nodes = elements.nodes_of(block);
@@ -42,8 +43,8 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             springs_in(twice_green_strain(F), elements.spring_strain[block]).sum()};
 }
 
-/// Sets the fractions of the spring stiffnesses of Maxwell elements that count in steps of length `step` [s]. In longer
-/// steps a spring counts less, because it relaxes more.
+/// Sets the fractions to which the springs of viscoelastic materials (Maxwell elements) count in steps of length `step`
+/// [s]. In longer steps a spring counts less, because it relaxes more.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
     viscous.strain_share = springs_that_count(elements.relaxation_rate[block], step);
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));

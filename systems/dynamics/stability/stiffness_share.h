@@ -20,9 +20,9 @@ inline constexpr Real step_times_frequency = 0.9 * 2;
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position);
 
 /// Weight of each element when its nodes share their masses (docs/methods/stable_step.md 2). At node k the element
-/// counts with |g_k|^2 times the weight, where g_k is its gradient at the node. The weight is mass_share times the
-/// volume. If the stiffness of the material law varies with deformation, it is also multiplied by an upper bound of
-/// dP/dF in the present shape.
+/// counts with |g_k|^2 times the weight, where g_k is the gradient of the shape function of the node. The weight is
+/// mass_share times the volume. If the stiffness of the material law varies with deformation, it is also multiplied by
+/// an upper bound of dP/dF in the present shape.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
 /// Sets the initial mass_share of each element, a factor of stiffness_weight(). It is 1, except in these cases:
@@ -78,8 +78,8 @@ Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block
 /// numbers `threshold`, 1.1 `threshold`, 1.21 `threshold`... that exceeds omega^2. It is infinite if omega^2 exceeds
 /// about ten times `threshold`.
 ///
-/// The springs of Maxwell elements count as in a step of length `step` [s]. In longer steps they relax more and count
-/// less, so the bound is valid for this step and for longer ones.
+/// The springs of viscoelastic materials (Maxwell elements) count as in a step of length `step` [s]. In longer steps
+/// they relax more and count less, so the bound is valid for this step and for longer ones.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                       LaneQuaternion<Real8>& q, Real threshold, Real step);
 
@@ -95,8 +95,9 @@ inline Real frame_bound(const ElementInputs& elements, Range blocks) {
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                  const Mat3& rotation, LaneQuaternion<Real8>& q, Real threshold = 0);
 
-/// Upper bound h on the Hessian dP/dF of each element of a block, with all viscous parts [Pa]. The stiffness of the
-/// element between nodes k and l is then bounded by the matrix h V g_k.g_l, with the volume V and the gradients g_k.
+/// Upper bound h on the Hessian dP/dF of each element of a block, with all viscous parts [Pa]. Let V be the volume of
+/// the element, and g_k the gradient of the shape function of its node k. The matrix of the entries h V g_k.g_l for the
+/// nodes k and l then bounds the stiffness of the element.
 Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                    LaneQuaternion<Real8>& q);
 

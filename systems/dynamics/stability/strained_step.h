@@ -19,8 +19,8 @@ std::size_t strained_step_memory(Range nodes, Range blocks);
 /// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. `nodes`: range of all
 /// nodes of the elements. Sequential.
 ///
-/// The result is valid only if it is longer than `goal.stable`: the springs of Maxwell elements are assumed to relax
-/// for this time. In a shorter step they would relax less and be stiffer.
+/// The result is valid only if it is longer than `goal.stable`. Springs of viscoelastic materials (Maxwell elements)
+/// are assumed to relax for this time; in a shorter step they would relax less and be stiffer.
 ///
 /// One number, the base, bounds omega^2 of most elements: those that are stable in steps near `goal.longest`. For the
 /// other elements the excess of omega^2 over the base is added up in a matrix, which is bounded by its row sums

@@ -13,18 +13,19 @@
 
 namespace skerry {
 
-/// Effect of a contact on one unknown of the equations: on the velocity of a node (three entries of a part), or on the
-/// velocity and spin of a rigid body (six entries).
+/// Link between a contact and one unknown of the equations. An unknown is the velocity of a node (three numbers), or
+/// the velocity and angular velocity of a rigid body (six numbers).
 struct UnknownEffect {
-    Index part = no_index;
+    Index part = no_index;  // part of the unknown: group of unknowns with one row and column of blocks (BlockFactor)
     Index first_entry = 0;  // index of the first entry of the unknown within the part
-    bool turns = false;
-    Real weight = 0;
+    bool turns = false;     // true for a rigid motion (six numbers)
+    Real weight = 0;        // factor of the unknown's velocity in the velocity of the contact
     // For rigid bodies: sum of stencil weight times vector from the centre of mass to the node [m]
     Vec3 arm = Vec3::Zero();
 };
 
-/// Equations of one region. Memory is reused between regions.
+/// Equations of one region, which is a group of contacts that are solved together, because bodies connect them. Memory
+/// is reused between regions.
 class BodyEquations {
 public:
     struct ContactEffects {
@@ -80,9 +81,13 @@ public:
     bool rigid_modes = false;  // true: deformable bodies move only as rigid bodies
     Column<Vec3> offset;  // by contact: part of the contact velocity that is independent of the unknowns, u - J v [m/s]
 
-    // Vectors in the order of BlockFactor::right [m/s, rad/s]. present: motion of the current iterate. produced: motion
-    // that the impulses for `present` produce. change: produced - present. step: Newton step. before: `present` before
-    // the step.
+    // Vectors of all unknowns, in the order of BlockFactor::right [m/s, rad/s]. Newton's method seeks a motion that the
+    // contact impulses belonging to it reproduce.
+    // - present: the iterate, which determines contact impulses
+    // - produced: motion that these impulses produce; equal to `present` at the solution
+    // - change: produced - present
+    // - step: Newton step
+    // - before: `present` before the step
     Column<Real> present, produced, change, step, before;
     Column<Mat3> derivative;  // by contact: derivative of its impulse (LawImpulse) when the last matrix was built
     // Data by contact. sliding_direction: direction in which the contact slid when the last matrix was built; zero if

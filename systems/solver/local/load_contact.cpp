@@ -80,7 +80,8 @@ Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> veloc
     const Stencil& stencil = inputs.stencil[row];
     for (std::size_t a = 0; a < 4; ++a) {
         const Index node = stencil.node[a], body = rigid.nodes.row(node);
-        // The velocity of a node that no impulse can move is already the mean velocity of the step.
+        // Half of the velocity change by rotation within the step is added, which gives the mean velocity. The velocity
+        // of a node that no impulse can move is already this mean.
         if (stencil.weight[a] == 0 || body == no_index || !(inputs.inverse_mass[node] > 0)) continue;
         const auto r = static_cast<std::size_t>(body);
         const Vec3 arm = rigid.position[static_cast<std::size_t>(node)] - rigid.center[r], spin = rigid.spins.kicked(r);

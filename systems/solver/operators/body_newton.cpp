@@ -433,10 +433,11 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    // A round ends when sqrt(d . K d), the square root of the merit function, is at most `enough` scale_ e, where e is
-    // the relative error of the region at the start of the round, and scale_ its scale [sqrt(J)].
+    // Let e be the relative error of the region at the start of a round, and scale_ its scale [sqrt(J)]. The round ends
+    // when sqrt(d . K d), the square root of the merit function, is at most the bound `enough` scale_ e.
     constexpr Real enough = 0.1;
-    // If the error is not yet below e, `solved` multiplies this bound: the round must then be solved more accurately.
+    // Factor on this bound while the present error of the region is e or more: a round that has not reduced the error
+    // is solved more accurately.
     constexpr Real solved = 1e-3;
     constexpr Index max_steps_in_round = 14;  // upper limit; a longer round is unlikely to converge soon
     constexpr Real softer = 10;               // factor by which the softness grows after a round that did not converge

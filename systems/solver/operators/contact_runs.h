@@ -83,7 +83,7 @@ private:
     struct Patch {
         std::size_t first, count, first_block;
         std::size_t body;  // row of RigidBodyTable
-        Index first_row;   // row in the region of the first touched node of the body
+        Index first_row;   // the body's first touched node: its row in the list of all nodes of the region
     };
     /// Nodes of the run that move when an impulse acts on one node of a contact. `count` is 0 if this node is on no
     /// implicit body.
@@ -100,12 +100,12 @@ private:
 
     Column<Run> run_;
     Column<Patch> patch_;
-    Column<Index> node_;                             // rows of nodes in the region, ascending within a patch
+    Column<Index> node_;                             // rows in the region's list of nodes, ascending within a patch
     Column<Vec4> pending_;                           // impulse sum by index in node_ [N s]
     Column<std::array<MovedNodes, 4>> moved_nodes_;  // by contact
     Column<PaddedMat3> block_;  // responses of node velocities to impulses on nodes, in world axes [1/kg]
-    // Index in node_ at which each row of the region was listed last. It is outdated if node_ now holds another row at
-    // this index.
+    // For each row in the region's list of nodes: index in node_ at which the row was stored last. The index is
+    // outdated if node_ now holds another row there.
     Column<Index> node_index_;
     Column<Vec4> sum_;
     SpreadImpulses impulses_;

@@ -15,7 +15,10 @@ CableLaw& law_of(const RegionStage& stage, Index cable) {
     return stage.memory.cable_law[static_cast<std::size_t>(cable)];
 }
 
-/// Writes the mobility matrix: of the segments of a cable, or of the three impulse components of a tie.
+/// Writes the mobility matrix (CableLaw::mobility), which maps impulses to velocity changes.
+/// - Cable: it maps the impulses of the tensions of all segments to the speeds at which they shorten the segments.
+/// - Tie, which the solver treats like a cable: the matrix is 3x3. It maps the impulse on each point to the change of
+///   the sum of the velocities of its points.
 void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughGroups& traversal,
                    std::span<Real> mobility) {
     const std::size_t count = law.segments(), first = static_cast<std::size_t>(law.first),

@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// One region and its rows of the working memory, in the order in which the traversal visits the contacts. BodyRegion
-/// replaces the functions from moves_node() on.
+/// One region and its rows of the working memory, in the order in which the traversal visits the contacts. The derived
+/// class BodyRegion (body_region.h) replaces moves_node() and all member functions that are declared after it.
 template <RegionOrder Traversal, class Memory>
 struct LoadedRegion {
     std::span<const Index> row;  // by number of the contact in the region: row of ContactTable
@@ -44,7 +44,8 @@ struct LoadedRegion {
     /// Returns the parts of the split impulse that do not come from contacts: joints, and rotation of capsules and
     /// cylinders.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
-    /// Work of the split impulse against the forces of the step [J]
+    /// Work that the push-out (split impulse) does against all forces of the step but contact forces, for example
+    /// against gravity, when its pseudo velocities displace the nodes [J].
     Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Traversal::own_masses); }
 };
 

@@ -25,8 +25,8 @@ public:
                    .traversal = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
                                               stage.inputs.implicit, stage.inputs.rigid, list_.node()),
                    .memory = memory_of(rows, base),
-                   // Whether bodies are still is checked only for the bodies of contacts. So regions with joints or
-                   // cables never use the tolerance of still regions.
+                   // tolerance_of() returns a smaller tolerance for regions of bodies that are still. It checks only
+                   // the bodies of contacts, so it is not used for regions with joints or cables.
                    .tolerance = rows.joint.empty() && rows.cable.empty() ? tolerance_of(stage, rows.contact)
                                                                          : stage.settings.tolerance},
                   rows.joint,

@@ -28,7 +28,7 @@ constexpr Real contact_cost = 10;
 /// Cost of a body apart from its elements and contacts, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
-/// Distance by which a body may move before the ranks that must hold it (own it or have a copy) are found again [m]:
+/// Distance that a body may move before the next rank search, which finds the ranks that must hold the body [m]. It is
 /// about the size of its surface elements, plus its path in steps_of_margin steps. `speed`: greatest speed of a node
 /// [m/s].
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
@@ -276,18 +276,17 @@ struct GhostMotion {
     }
 };
 
-/// Finds whether a body may leave the box with which its holders were found. It cannot leave the box if its path since
-/// the last rank search, plus its motion in this step, is below its margin. The motion is the larger of two values: the
-/// bound of the collision search (body_reach), which follows from the speed at the start of the step, and the path at
-/// the greatest speed in this attempt, after forces and contacts. Also requests a rank search if the last one was
-/// steps_between_searches steps ago.
+/// Requests a rank search if a body may leave the box with which its holders were found, or if the last search was
+/// steps_between_searches steps ago. A body stays in the box while its path since the search, plus its motion in this
+/// step, is below its margin.
 void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
                   const RunCounters& run, const std::uint64_t& searched_step, RankFindings& own_findings) {
     const std::span<const Real> reach = search.memory.body_reach;
     for (std::size_t b = 0; b < bodies.margin.size(); ++b) {
         const Real speed = bodies.max_speed[b];
         tried_speed[b] = speed;
-        // If the speed is not finite, the step is refused, and no margin would be wide enough.
+        // body_reach is a bound that follows from the speed at the start of the step. The present speed contains the
+        // effect of forces and contacts. If it is not finite, the step is refused, and no margin would be wide enough.
         const Real motion = std::isfinite(speed) ? std::max(reach[b], speed * h) : reach[b];
         own_findings.ghosts_expired |= !(bodies.moved[b] + motion < bodies.margin[b]);
     }

@@ -39,7 +39,8 @@ std::uint64_t hilbert_position(std::array<std::uint32_t, 3> cell) {
     return position;
 }
 
-/// A unit of bodies (WholeWorld::unit) with the sum of the costs and the bounding box of its bodies.
+/// A unit, which is a set of bodies that joints or similar rows connect (WholeWorld::unit), with the sum of the costs
+/// and the bounding box of its bodies.
 struct UnitExtent {
     Index unit;
     Real cost = 0;

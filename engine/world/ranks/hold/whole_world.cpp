@@ -18,7 +18,8 @@ std::vector<Index> rows_by_slot(std::span<const std::uint32_t> slot) {
     return rows;
 }
 
-/// For each body: row of the first body of its unit (WholeWorld::unit).
+/// Returns for each body the row of the first body of its unit. A unit is a set of bodies that joints, ties, cables,
+/// springs and other rows connect (WholeWorld::unit).
 Column<Index> units_of(Model& model) {
     UnionFind bodies;
     bodies.start(model.bodies.slot.size());

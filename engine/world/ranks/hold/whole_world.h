@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// A rank that holds copies of the bodies of a unit (WholeWorld::unit), because it has to solve a contact region with
-/// one of them.
+/// A rank that holds copies of the bodies of a unit (set of bodies that joints or similar rows connect), because it has
+/// to solve a contact region with one of them.
 struct FetchedUnit {
     Index unit;  // WholeWorld::unit
     int rank;

@@ -17,9 +17,8 @@ struct MailedNode {
     Vec3 velocity = Vec3::Zero(), push = Vec3::Zero();  // NodeTable: velocity_next, push_out [m/s]
 };
 
-/// Contact impulse and moment on a rigid body, or on the frame of an implicit body, relative to which the body deforms.
-/// Also the push-out velocity and spin of the body or frame, which reduce overlaps (RigidBodyTable). A record without
-/// body (no_index) ends a list.
+/// Results for a rigid body, or for the frame of an implicit body: contact impulse and moment, and the velocity and
+/// spin of the push-out, which reduces overlaps (RigidBodyTable). A record without body (no_index) ends a list.
 struct MailedBody {
     Index body = no_index;  // row of the body in the undivided world
     Index deforming = 0;    // number of records MailedDeformation that follow
@@ -192,9 +191,9 @@ private:
         return no_index;
     }
 
-    /// Calls visit(unit, number) for each result of the joints, ties and cables in the units (sets of connected bodies)
-    /// for which wants(unit) is true. `unit`: first body of the unit. `number`: for example an impulse or an energy.
-    /// All ranks that hold a unit have its rows in the same order, so messages need not name the rows.
+    /// Calls visit(unit, number) for each result, such as an impulse, of the joints, ties and cables in the units for
+    /// which wants(unit) is true. `unit`: first body of a set of connected bodies. All ranks that hold a unit have its
+    /// rows in the same order, so messages need not name the rows.
     void for_each_result_of_units(auto&& wants, auto&& visit) {
         if (regions_.unit.empty()) return;
         const auto wanted_unit = [&](Index body) {
@@ -221,10 +220,11 @@ private:
         }
     }
 
-    /// Writes one message for each peer. It begins with RegionTable::pushed (nonzero if the solver has pushed bodies
-    /// out of overlaps) and the impulses of the contacts that the peer has sent. Then come lists of nodes, bodies, hold
-    /// rows and units; an empty record ends each list. The results of the joints, ties and cables of the listed units
-    /// come last.
+    /// Writes one message for each peer, with this content:
+    /// - RegionTable::pushed, which is nonzero if the solver has pushed bodies out of overlaps
+    /// - the impulses of the contacts that the peer has sent
+    /// - lists of nodes, bodies, hold rows and units, each ended by an empty record
+    /// - the results of the joints, ties and cables of the listed units
     void send() {
         const std::size_t peers = bodies_.peers.size();
         RankMail& mail = regions_.mail;

@@ -39,9 +39,9 @@ public:
     }
 
 private:
-    /// Returns which rank solves the contact region of a group of nodes (nodes that move together): its index in
-    /// `peers`, -1 for this rank, or a number below -1 for a rank that shares no body with this rank (no_peer).
-    /// `group`: first node of the group.
+    /// Returns the rank that solves the contact region of a group of nodes, which move together: -1 for this rank, its
+    /// index in `peers`, or no_peer(), a number below -1, if it shares no body with this rank. `group`: first node of
+    /// the group.
     int solver_of(Index group) {
         const Index root = regions_.sets.root(group);
         const int owner = regions_.label[root].owner;
@@ -61,9 +61,8 @@ private:
         return false;
     }
 
-    /// Tells each peer for which units of this rank (sets of bodies that joints, ties or cables connect) the peer must
-    /// solve the joints, ties and cables. Units of other ranks count as solved elsewhere until a message of their owner
-    /// assigns them to this rank.
+    /// Tells each peer which units of this rank (sets of bodies that joints, ties or cables connect) the peer must
+    /// solve. Units of other ranks count as solved elsewhere until a message of their owner assigns them to this rank.
     void send_units() {
         regions_.solved_elsewhere.assign(regions_.unit.size(), 1);
         regions_.unit_count.assign(bodies_.peers.size(), 0);

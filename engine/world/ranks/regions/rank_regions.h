@@ -32,8 +32,8 @@ struct RegionLabel {
 };
 
 /// A contact in a message, with its friction axis and the impulse with which the solver starts. Bodies are named by
-/// their rows in the undivided world. A node of the stencil is encoded as twice its number within its body, plus 1 if
-/// it belongs to the second body.
+/// their rows in the undivided world. In the stencil, node n of the first body is encoded as 2 n, and node n of the
+/// second body as 2 n + 1.
 struct MailedContact {
     ContactRow row;
     FrictionAxis friction_axis;

@@ -93,7 +93,7 @@ private:
     bool is_touched(Index group) const { return regions_.sets.node[group].stamp == regions_.sets.now; }
 
     /// Returns the first node of the group (nodes that move together) that contains a node. If joints, ties or cables
-    /// act on the unit of its body, all nodes of the unit are one group.
+    /// act on the unit of its body (RankRegions::unit), all nodes of the unit are one group.
     Index leader(Index node) const {
         if (regions_.unit.empty()) return nodes_.groups.leader(node);
         const Index unit = regions_.unit[bodies_.body_of(node)];

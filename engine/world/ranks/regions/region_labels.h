@@ -24,8 +24,9 @@ struct JoinedBodies {
     }
 };
 
-/// Nodes, and the groups of nodes that move together (NodeGroups). label_regions also treats all moving nodes of a unit
-/// as one group, so that one rank solves all joints, ties and cables of the unit.
+/// Nodes, and the groups of nodes that move together (NodeGroups). A unit is a set of bodies that joints, ties, cables
+/// or similar rows connect (RankRegions::unit). label_regions also treats all moving nodes of a unit as one group, so
+/// that one rank solves all joints, ties and cables of the unit.
 struct RegionGroups {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     NodeGroups groups;
@@ -43,10 +44,11 @@ struct RegionGroups {
 /// Sets RankRegions::unit. `bodies`: number of rows of BodyTable.
 void find_units(const JoinedBodies& joined, std::size_t bodies, RankRegions& regions);
 
-/// Joins the groups of nodes of each contact to regions, and labels them. The units of this rank are regions even
-/// without contacts. The ranks exchange the labels in `rounds` rounds; a label that has changed is sent in the next
-/// round. Returns the number of rounds that were needed, the last of which changes no label on this rank. The result is
-/// rounds + 1 if a label changed in the last round.
+/// Joins the groups of nodes of each contact to regions, and labels these in `rounds` exchanges between the ranks
+/// (docs/methods/ranks.md 3). The units of this rank are regions even without contacts.
+///
+/// Returns the number of rounds that were needed, the last of which changes no label on this rank; rounds + 1 if a
+/// label changed in the last round.
 int label_regions(const SharedBodies& bodies, const RegionGroups& nodes, std::span<const Stencil> stencil, int rounds,
                   RankRegions& regions, RankChannel& channel);
 

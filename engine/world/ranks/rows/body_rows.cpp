@@ -102,9 +102,9 @@ std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> ro
     return exchanged;
 }
 
-/// Makes the next step search the contact candidates (features that may touch) of each pair with a marked body again. A
-/// list of candidates is valid until BodyTable::travel of the bodies has grown by a given distance, but another rank
-/// has measured `travel` of the marked bodies.
+/// Makes the next step search each pair with a marked body again. A list of contact candidates (features that may
+/// touch) is valid until BodyTable::travel of the bodies has grown by a given distance, but another rank has measured
+/// `travel` of the marked bodies.
 void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p)
         if (marked[static_cast<std::size_t>(pairs.first[p])] ||

@@ -46,8 +46,9 @@ struct BodyRows {
 /// it returns true, and replace_rows keeps the contact data of these pairs.
 using WantsPair = std::function<bool(std::uint64_t pair)>;
 
-/// Returns copies of the rows of marked bodies. The world must have no pending changes (WorldState::settle). The marked
-/// bodies must form complete units (WholeWorld::unit). `marked`: by row of BodyTable.
+/// Returns copies of the rows of marked bodies. The world must have no pending changes (WorldState::settle). If a body
+/// is marked, all bodies of its unit, to which joints or similar rows connect it (WholeWorld::unit), must be marked.
+/// `marked`: by row of BodyTable.
 BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked, const WantsPair& wants_pair);
 /// Adds the records of the marked bodies to their rows. Rows for rank 0 need none, because rank 0 keeps all records.
 void copy_records(const Model& model, std::span<const std::uint8_t> marked, BodyRows& to);

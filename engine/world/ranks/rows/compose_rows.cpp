@@ -188,9 +188,9 @@ private:
         }
     }
 
-    /// Appends the progress of the evaluation of stable steps (StepWatch), which visits one body after the other. In
-    /// the order of the undivided world, all ranks have come equally far. So the evaluation goes on at the first new
-    /// row that it had not yet finished on the rank from which the row comes.
+    /// Appends the progress of the evaluation of stable steps (StepWatch), which visits one body after the other. All
+    /// ranks have come equally far in the order of the undivided world. So the evaluation goes on at the first row that
+    /// its source had not yet finished.
     void append_watch() {
         StepWatch& watch = to_.watch;
         for (const Pick& pick : picks_) {
@@ -283,8 +283,8 @@ private:
         return *found;
     }
 
-    /// Rows to copy from a source: those that connect a body that is copied from this source. A source with
-    /// gives_common also provides the rows that connect no body.
+    /// Rows of a table (such as that of joints or loads) to copy from a source: those that refer to a body that is
+    /// copied from this source. A source with gives_common also provides the rows that refer to no body.
     template <class Table>
     static std::vector<std::size_t> rows_given(Table& table, const RowSource& source) {
         std::vector<std::uint8_t> gives(table.slot.size(), source.gives_common ? 1 : 0);

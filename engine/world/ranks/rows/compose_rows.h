@@ -20,7 +20,9 @@ struct RowSource {
         marked;           // by row of BodyTable: nonzero for a body that the new model gets; empty: all
     Index watched, kept;  // StepWatch::body and StepWatch::kept
     StepEvaluation evaluation;
-    bool gives_common;        // true: also gives the rows that join no body
+    // True if the model also gives the rows of joints, cables, loads and so on (Model::for_each_joining) that refer to
+    // no body, for example a load that acts on all bodies.
+    bool gives_common;
     bool is_used_up = false;  // true: the columns of its bodies are freed as soon as they are copied
     RowMoves moves{};         // new numbers of the rows; the lists of removed rows are not set
     std::vector<std::vector<AnyColumn>> columns = columns_by_body_table(*model);

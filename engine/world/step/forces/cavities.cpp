@@ -27,10 +27,9 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
             if_any_cavity(w.model));
 }
 
-/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]. It is the
-/// sum of two bounds: one for the filling, whose pressure depends on the volume, and one for the rotation of pressure
-/// forces with the faces. For implicit bodies it is only the bound for the filling. `p`: largest pressure [Pa].
-/// `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
+/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]
+/// (docs/methods/cavities.md 3). For explicit bodies it includes the bound for pressure forces that rotate with the
+/// faces. `p`: largest pressure [Pa]. `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
@@ -57,14 +56,14 @@ Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Re
     return stiffness * of_filling + (is_implicit ? 0 : p * of_turning);
 }
 
-/// Upper bound by which the filling of one cavity raises the squared circular frequencies of a rigid body [1/s^2]:
-/// stiffness (|A|^2/m + L.I^-1 L). A is the sum of the area vectors of the faces, L the sum of their moments about the
-/// centre of mass, m the mass and I the inertia of the body.
+/// Upper bound by which the filling of one cavity raises the squared circular frequencies of a rigid body [1/s^2]
+/// (docs/methods/cavities.md 3). `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
 Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t c, Real stiffness) {
     const auto body = static_cast<std::size_t>(cavities.body[c]);
     if (model.is_held(body)) return 0;
     const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
     const RigidBodyTable& rigid = model.rigid_bodies;
+    // sum of the area vectors of the faces, and of their moments about the centre of mass
     Vec3 area = Vec3::Zero(), moment = Vec3::Zero();
     for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
          f < static_cast<std::size_t>(cavities.faces[c].end); ++f) {

@@ -28,12 +28,12 @@ void list_fibre_forces(WorldState& w, TaskGraph& g) {
             value(w.scratch.parameters.intervals), write(m.fibres.next), write(m.nodes.applied_force), if_any_fibre(m));
 }
 
-/// Computes FibreTable::mobility, by which fibres limit the stable step. For a tetrahedron it is the sum over its nodes
-/// n of s_n^2 V_n/m_n. Here s_n is the derivative of the node's shape function along the fibres, m_n the mass of the
-/// node, and V_n the volume of all tetrahedra of the family (set of fibres) at the node.
-///
-/// The bound assumes that the tetrahedra of a family divide the mass of each node in proportion to their volumes. A
-/// tetrahedron with the modulus k along the fibres then has a squared circular frequency of at most k times its
+/// Computes FibreTable::mobility, by which fibres limit the stable step (docs/methods/elasticity.md 2.7). It is the sum
+/// of s_n^2 V_n/m_n over the nodes n of a tetrahedron, with these symbols:
+/// - s_n: derivative of the node's shape function along the fibres
+/// - V_n: volume of all tetrahedra of the family (set of fibres) at the node
+/// - m_n: mass of the node, which these tetrahedra divide in proportion to their volumes
+/// With the modulus k along the fibres, the squared circular frequency of the tetrahedron is at most k times its
 /// mobility. The whole family has at most the largest of these values.
 void weigh_fibres(Model& model) {
     FibreTable& table = model.fibres;

@@ -19,8 +19,7 @@ void list_rigid_kick(WorldState& w, TaskGraph& g) {
 }
 
 /// Lists the stage that computes the pose of each body at the end of the step. The stage also sets velocity_next of
-/// each node to the constant velocity that takes the node from its present position to its position at the end of the
-/// step.
+/// each node to the constant velocity that takes the node to its position at the end of the step.
 void list_turn(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies, rigid_inputs(m),
