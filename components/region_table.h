@@ -35,9 +35,7 @@ struct RegionTable {
     // recall_regions makes a key.
     Column<ContactKey> id;
     Column<Index> iterations;  // number of solver sweeps; 0 if a shortcut made sweeps unnecessary
-    // Relative error e_nat of the solution (docs/methods/errors.md 2), or the error of the split impulse if that is
-    // larger and has reached the iteration limit (docs/methods/contact.md 3.4).
-    Column<Real> error;
+    Column<Real> error;        // relative error e_nat of the solution (docs/methods/errors.md 2)
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
     Column<Real> dissipated;  // energy dissipated by the contacts of the region in this step [J]

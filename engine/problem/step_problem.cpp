@@ -162,8 +162,8 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         const Vec3 rolling =
             rigid.nodes.rolling(step.contacts.stencil[row], row, step.contacts.normal[row], step.contacts.touch,
                                 [&](std::size_t r) { return rigid.spins.kicked(r); });
-        lumped.offset.push_back(
-            contact_offset(step.contacts, static_cast<Index>(row), step.free_velocity, contact.bias, h) + rolling);
+        lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row] -
+                                midpoint_slip(step.contacts, static_cast<Index>(row), step.free_velocity) + rolling);
         lumped.friction.push_back(contact.friction.slide);
         impulse.push_back(step.impulse[row]);
         result.contact.push_back(static_cast<Index>(row));

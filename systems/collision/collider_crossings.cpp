@@ -85,8 +85,7 @@ private:
         found.push_back(contact_row(
             *this, candidate.feature + static_cast<std::uint64_t>(feature.kind == Kind::edge ? crossing_of_edge : 0),
             contact_kind, stencil,
-            {point, normal, std::max(along, scale.radii), scale.contact_distance, velocity_at(pose_, point)},
-            motion.h));
+            {point, normal, std::max(along, scale.radii), scale.contact_distance, velocity_at(pose_, point)}));
     }
 
     const ColliderGeometry& geometry_ = inputs.collider.geometry[second];

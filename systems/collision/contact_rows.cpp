@@ -21,26 +21,8 @@ PairData::PairData(const CollisionInputs& all_inputs, const PairTable& pairs, In
     if (!is_cylinder(inputs, first) && has_cylinder(inputs, pairs, p)) std::swap(first, second);
 }
 
-namespace {
-
-/// Velocity of the collider of a pair at the contact point in the middle of the step, when the point has moved for half
-/// a step with the nodes of the contact [m/s]. The normal velocity is left as at the start of the step: its error does
-/// not add up, because find_contacts measures the gap anew in every step.
-Vec3 midpoint_surface_velocity(const PairData& pair, const Stencil& stencil, const ContactGeometry& geometry, Real h) {
-    if (pair.kind != PairKind::collider) return geometry.surface_velocity;
-    const RigidMotion& motion = pair.inputs.collider.motion[pair.second];
-    if (motion.angular_velocity.isZero(0)) return geometry.surface_velocity;
-    Vec3 relative = -motion.velocity;  // velocity of the contact point relative to the origin of the collider [m/s]
-    for (std::size_t a = 0; a < 4; ++a)
-        if (stencil.weight[a] != 0) relative += stencil.weight[a] * pair.inputs.velocity[stencil.node[a]];
-    const Vec3 change = h / 2 * motion.angular_velocity.cross(relative);
-    return geometry.surface_velocity + change - change.dot(geometry.normal) * geometry.normal;
-}
-
-}  // namespace
-
 ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
-                       const ContactGeometry& geometry, Real h) {
+                       const ContactGeometry& geometry) {
     const BodyTable& body = pair.inputs.body;
     ContactRow row{.key = {pair.key, feature},
                    .kind = kind,
@@ -49,7 +31,7 @@ ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind 
                    .normal = geometry.normal,
                    .gap = geometry.distance - geometry.contact_distance,
                    .distance = geometry.distance,
-                   .surface_velocity = midpoint_surface_velocity(pair, stencil, geometry, h),
+                   .surface_velocity = geometry.surface_velocity,
                    .static_friction = pair.surface.static_friction,
                    .dynamic_friction = pair.surface.dynamic_friction,
                    .restitution = pair.surface.restitution,

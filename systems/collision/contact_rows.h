@@ -46,10 +46,9 @@ struct ContactGeometry {
     Vec3 surface_velocity = Vec3::Zero();  // velocity of an analytic collider at `point`; 0 for two bodies [m/s]
 };
 
-/// Contact row of a pair. Its surface velocity is that of the collider in the middle of the step of length `h`, so that
-/// a body that sticks to a rotating collider moves on a circle.
+/// Contact row of a pair.
 ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
-                       const ContactGeometry& geometry, Real h);
+                       const ContactGeometry& geometry);
 
 /// Returns the feature key of a contact point on a rigid cylinder. `feature`: feature key of the candidate. `number`:
 /// number of the contact point among the points of this candidate, counted from 0.

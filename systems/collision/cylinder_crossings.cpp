@@ -255,7 +255,7 @@ private:
             const Vec3 point = cylinder_.motion.position + arm - distance * normal;
             return contact_row(*this, feature_of_touch(*this, candidate.feature, number),
                                kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
-                               stencil, {point, normal, distance, scale.shell, surface_velocity}, motion.h);
+                               stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
         // `along` compares positions at the start of the step, but measures along the normal at the time of contact. If
         // the shapes have rotated by more than a right angle in between, `along` can be negative although nothing

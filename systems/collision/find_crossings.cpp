@@ -115,7 +115,7 @@ private:
             contact_row(*this, candidate.feature,
                         features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
                         at_contact.stencil,
-                        {at_contact.point, normal, std::max(along, scale.radii), scale.contact_distance}, motion.h));
+                        {at_contact.point, normal, std::max(along, scale.radii), scale.contact_distance}));
     }
 
     std::span<const Real> asleep_until_;

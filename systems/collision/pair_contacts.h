@@ -105,7 +105,7 @@ struct PairContacts : PairData {
     void add(std::uint64_t feature, ContactKind contact_kind, const Stencil& stencil, const ContactGeometry& geometry) {
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0 && inputs.inverse_mass[stencil.node[a]] > 0) {
-                found.push_back(contact_row(*this, feature, contact_kind, stencil, geometry, h));
+                found.push_back(contact_row(*this, feature, contact_kind, stencil, geometry));
                 return;
             }
     }

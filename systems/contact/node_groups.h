@@ -122,17 +122,6 @@ struct RigidSpins {
     Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
     /// Spin after the kick of this step (moments of gravity and loads), before the contacts act [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
-    /// Acceleration of a point that is fixed to the body, due to the rotation of the body with the spin kicked()
-    /// [m/s^2]. Without moments, the angular momentum is constant while the inertia rotates with the body, so the spin
-    /// changes.
-    ///
-    /// `arm`: vector from the centre of mass to the point [m]. `held`: true if an attachment prescribes the motion of
-    /// the body; its spin is then constant in this step.
-    Vec3 acceleration(std::size_t r, const Vec3& arm, bool held) const {
-        const Vec3 spin = kicked(r), centripetal = spin.cross(spin.cross(arm));
-        if (held) return centripetal;
-        return centripetal + (inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]).cross(spin)).cross(arm);
-    }
 };
 
 /// The cables that the region solver solves, with their columns by point (CableBlockTable).

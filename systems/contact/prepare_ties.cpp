@@ -66,7 +66,11 @@ FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, 
     const Vec3 arm = point - ties.center[r], spin = ties.spins.kicked(r);
     at.turning = spin.cross(arm);
     at.velocity = (ties.momentum[r] + ties.kick[r]) / ties.mass[r] + at.turning;
-    at.acceleration = ties.spins.acceleration(r, arm, ties.holder[r] != no_index);
+    at.acceleration = spin.cross(at.turning);
+    if (ties.holder[r] == no_index)
+        at.acceleration +=
+            (ties.spins.inverse_inertia[r] * (ties.spins.angular_momentum[r] + ties.spins.moment_kick[r]).cross(spin))
+                .cross(arm);
     if (node != no_index)
         at.acceleration += 2 * spin.cross(ties.velocity_next[static_cast<std::size_t>(node)] - at.velocity);
     return at;

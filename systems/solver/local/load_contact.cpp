@@ -73,29 +73,4 @@ Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> 
     return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);
 }
 
-Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real h) {
-    const RigidInputs& rigid = inputs.rigid;
-    Vec3 slip = Vec3::Zero();
-    if (!rigid.any() || inputs.static_friction[row] == 0 || inputs.is_tie(row)) return slip;
-    const Stencil& stencil = inputs.stencil[row];
-    for (std::size_t a = 0; a < 4; ++a) {
-        const Index node = stencil.node[a], body = rigid.nodes.row(node);
-        // Half of the velocity change by rotation within the step is added, which gives the mean velocity. The velocity
-        // of a node that no impulse can move is already this mean.
-        if (stencil.weight[a] == 0 || body == no_index || !(inputs.inverse_mass[node] > 0)) continue;
-        const auto r = static_cast<std::size_t>(body);
-        const Vec3 arm = rigid.position[static_cast<std::size_t>(node)] - rigid.center[r], spin = rigid.spins.kicked(r);
-        Vec3 acceleration = rigid.spins.acceleration(r, arm, !(rigid.inverse_mass(r) > 0));
-        if (inputs.implicit.row(node, rigid.nodes) != no_index)  // Coriolis acceleration
-            acceleration += 2 * spin.cross(velocity_next[node] - rigid.velocity(r) - spin.cross(arm));
-        slip += h / 2 * stencil.weight[a] * acceleration;
-    }
-    return slip - slip.dot(inputs.normal[row]) * inputs.normal[row];
-}
-
-Vec3 contact_offset(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real bias, Real h) {
-    return bias * inputs.normal[row] - inputs.surface_velocity[row] + arc_slip(inputs, row, velocity_next, h) -
-           midpoint_slip(inputs, row, velocity_next);
-}
-
 }  // namespace skerry

@@ -24,17 +24,6 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 /// friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
-/// Half of the tangential velocity change of the contact point that the rotation of rigid and implicit bodies causes
-/// within the step (docs/methods/contact.md 3.3) [m/s]. With it, the friction law uses the mean velocity of a point on
-/// an arc, so a sticking contact stays at the same point of both surfaces.
-///
-/// Zero without friction, and for ties, which have this term in their prescribed velocity.
-Vec3 arc_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real h);
-
-/// Velocity that the contact velocity contains beside the velocities of the nodes: the bias along the normal, minus the
-/// surface velocity, plus arc_slip, minus midpoint_slip [m/s]. `bias`: contact_bias.
-Vec3 contact_offset(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, Real bias, Real h);
-
 /// Loads contact `row`. `velocity_next`: predicted node velocities. `local(node)`: velocity row of a moving node in the
 /// region. `on_rigid_body(node, weight)`: true if the node moves with a rigid body; the LumpedContact omits such a
 /// node.
@@ -45,7 +34,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     LumpedContact contact;
     contact.normal = padded(inputs.normal[row]);
     contact.bias = contact_bias(inputs, row, velocity_next, settings, h);
-    Vec3 offset = contact_offset(inputs, row, velocity_next, contact.bias, h);
+    Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
     contact.node_count = 0;
     contact.diagonal = 0;
     Real lightest = 0;  // greatest inverse mass of the moving nodes [1/kg]
@@ -73,6 +62,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};
+    offset -= midpoint_slip(inputs, row, velocity_next);
     contact.offset = padded(offset);
     return contact;
 }

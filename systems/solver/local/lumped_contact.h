@@ -15,7 +15,7 @@ namespace skerry {
 /// velocity.
 struct LumpedContact {
     Vec4 normal;                 // unit vector
-    Vec4 offset;                 // velocity of fixed nodes, plus contact_offset (load_contact.h) [m/s]
+    Vec4 offset;                 // velocity of fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
     std::array<Real, 4> weight;  // stencil weights of the moving nodes
     std::array<Real, 4> step;    // weight times inverse mass of each moving node [1/kg]
     std::array<Index, 4> node;   // velocity rows of the moving nodes in the region

@@ -76,8 +76,7 @@ inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity
 }
 
 struct PushMemory {
-    std::span<Real> impulse, bias;   // by contact: push impulse [N s]; right-hand side b of push_bias [m/s]
-    std::span<Real> impulse_before;  // by contact: push impulse before the last sweep [N s]
+    std::span<Real> impulse, bias;  // by contact: push impulse [N s]; right-hand side b of push_bias [m/s]
 };
 
 }  // namespace skerry

@@ -24,7 +24,6 @@ struct ContactMemory {
     std::span<const Index> node;  // by velocity row: row of NodeTable, or no_index for rigid bodies
     std::span<Vec4> scratch;      // by velocity row: velocities for the previous impulses; multiply() overwrites them
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
-    std::span<Vec4> push_before{};  // by velocity row: pseudo velocities before the last sweep of the split impulse
 };
 
 /// Base class of operators. `Own` is the operator that derives from it. It adds sweeps and defines

@@ -82,7 +82,6 @@ public:
         memory.node = memory.node.first(count_);
         memory.velocity = memory.velocity.first(count_);
         memory.scratch = memory.scratch.first(count_);
-        memory.push_before = memory.push_before.first(count_);
     }
 
 private:
@@ -201,15 +200,13 @@ template <class Region>
     return all;
 }
 
-/// Finish: writes back, applies the split impulse, and records its error and the dissipated energy.
+/// Finish: writes back, applies the split impulse, and records the dissipated energy.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline void finish_region(const RegionStage& stage, const Region& region, const Op& op,
                                                  RegionOutcome& outcome) {
     outcome.dissipated = write_back(stage, region);
     if (outcome.status == RegionStatus::not_finite) return;
-    const PushOutcome push = solve_push(stage, region, op);
-    if (!push.any) return;
-    note_push_error(push.error, stage.settings, outcome);
+    if (!solve_push(stage, region, op)) return;
     write_nodes(stage, region, region.memory.scratch, stage.out.push_out);
     region.write_body_push(stage);
     outcome.push_work = region.push_work(stage);

@@ -1,13 +1,12 @@
-// Split impulse of a region: separates penetrating contacts without adding energy (docs/methods/contact.md 3.4).
+// Split impulse (push-out) of a region: separates penetrating contacts without adding energy, by pseudo velocities that
+// move nodes in this step only (docs/methods/contact.md 3.4).
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <span>
 #include <utility>
 
-#include "systems/solver/methods/acceleration.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/regions/region_stage.h"
 
@@ -33,19 +32,8 @@ struct PushedContacts {
     /// Rate of change of a contact's gap because a rotating body moves the contact point on an arc instead of a
     /// straight line; 0 if the arc does not shrink the gap. It is never positive [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
-    /// Does one sweep over the joints. Returns the change of their impulses [J]
-    SweepChange sweep_joints(std::span<Vec4>) const { return {}; }
-    /// Stores the present impulses of the joints as the previous ones.
-    void remember() const {}
-    void extrapolate(Real) const {}
-};
-
-/// Result of the split impulse of a region.
-struct PushOutcome {
-    bool any = false;  // false: all pseudo velocities are zero
-    // Error of a push that reached the iteration limit: energy norm of the change of its last sweep, relative to that
-    // of a push of all contacts at recovery_speed. 0 if the sweeps converged.
-    Real error = 0;
+    /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
+    Real sweep_joints(std::span<Vec4>) const { return 0; }
 };
 
 /// Solver for the split impulse of one region. `Others` is PushedContacts or PushedBodies.
@@ -59,21 +47,20 @@ public:
           others_(std::move(others)),
           memory_(push_memory(stage, region.base, region.row.size())),
           velocity_(region.memory.scratch),
-          velocity_before_(region.memory.push_before),
           slop_(push_slop(stage.inputs.gravity, stage.h)) {}
 
-    /// Computes the pseudo velocities. `pressed`: true if some contact penetrates by more than the slop, the depth up
-    /// to which penetrations are not corrected.
-    PushOutcome run(bool pressed) {
+    /// Computes the pseudo velocities. Returns false if all are zero. `pressed`: true if some contact penetrates by
+    /// more than the slop, the depth up to which penetrations are not corrected.
+    bool run(bool pressed) {
         clear();
         const Requested requested = request();
-        if (!pressed && !requested.by_rotation) return {};
-        Real left = sweep(requested.size);
+        if (!pressed && !requested.by_rotation) return false;
+        sweep(requested.size);
         // The push rotates bodies, and rotation changes the gaps of contacts. So the loss of gap is computed again with
         // the new rotation, and more sweeps compensate for it. This is done `rotation_rounds` times.
         constexpr int rotation_rounds = 2;
-        for (int round = 0; round < rotation_rounds && others_.any_rotation(); ++round) left = sweep(request().size);
-        return {true, left > 0 ? std::sqrt(left / size_of_pushes(stage_.settings.recovery_speed)) : 0};
+        for (int round = 0; round < rotation_rounds && others_.any_rotation(); ++round) sweep(request().size);
+        return true;
     }
 
 private:
@@ -114,87 +101,32 @@ private:
         return {size, by_rotation};
     }
 
-    /// Squared energy norm of pushes that change the normal speeds of all contacts by `speed` [J]
-    Real size_of_pushes(Real speed) const {
-        return region_.traversal.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
-            Real size = 0;
-            for (std::size_t i = begin; i < end; ++i) size += op_.push_size(static_cast<Index>(i), speed);
-            return size;
-        });
-    }
-
-    /// Sweeps until the pushes of the squared energy norm `requested` are reached. Returns 0 if the sweeps converged,
-    /// otherwise the squared energy norm of the change of the last sweep [J]
-    Real sweep(Real requested) {
-        constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
-        largest_request_ = std::max(largest_request_, requested);
-        const Real least = rounding * largest_request_;
-        const Real left = sweep_rows(std::max(region_.tolerance * region_.tolerance * requested, least), false);
-        if (left == 0) return 0;
+    void sweep(Real requested) {
+        if (sweep_rows(region_.tolerance * region_.tolerance * requested, false)) return;
         // Joints and ties can prevent contacts from being pushed apart, so that the sweeps do not converge. The last
         // sweeps then visit only joints and ties: if their positions kept an error, the next velocity solve would
         // demand a motion that the contacts forbid.
-        return std::max(left, sweep_rows(least, true));
+        constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
+        sweep_rows(rounding * requested, true);
     }
 
     /// Sweeps over the joints and contacts, or over the joints and ties only, until the squared energy norm of the
-    /// change of a sweep is at most `small`. Returns 0 if this happens within max_iterations, otherwise the squared
-    /// energy norm of the last change [J]
-    Real sweep_rows(Real small, bool only_equations) {
-        // Most pushes converge within this number of sweeps. Extrapolation, which takes time, serves the others, such
-        // as those of a light body below a heavy one.
-        constexpr Index plain_sweeps = 20;
-        Acceleration<Real> acceleration;
-        for (Index iteration = 1;; ++iteration) {
-            const bool accelerated = iteration > plain_sweeps && !only_equations;
-            const SweepChange change = sweep_once(only_equations, accelerated);
-            if (change.squared_change == 0 || (change.squared_change <= small && !stage_.settings.fixed_iterations))
-                return 0;
-            if (iteration >= stage_.settings.max_iterations) return change.squared_change;
-            if (accelerated)
-                extrapolate(acceleration.next(change, false));
-            else if (iteration == plain_sweeps)
-                remember();
+    /// change of a sweep is at most `small`. Returns true if this happens within max_iterations.
+    bool sweep_rows(Real small, bool only_equations) {
+        for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
+            const Real joint_change = others_.sweep_joints(velocity_);
+            const Real change =
+                region_.traversal.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
+                    Real size = begin == 0 ? joint_change : 0;
+                    for (std::size_t i = begin; i < end; ++i)
+                        if (!only_equations || region_.memory.contact[i].friction.ties())
+                            size +=
+                                op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), memory_.impulse[i]);
+                    return size;
+                });
+            if (change == 0 || (change <= small && !stage_.settings.fixed_iterations)) return true;
         }
-    }
-
-    /// Does one sweep. SweepChange::reversal is computed only if the sweeps are `accelerated`.
-    SweepChange sweep_once(bool only_equations, bool accelerated) {
-        const SweepChange of_joints = others_.sweep_joints(velocity_);
-        return region_.traversal.template sum<SweepChange>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
-            SweepChange sum = begin == 0 ? of_joints : SweepChange{};
-            for (std::size_t i = begin; i < end; ++i) {
-                if (only_equations && !region_.memory.contact[i].friction.ties()) continue;
-                Real& impulse = memory_.impulse[i];
-                const Real before = impulse;
-                const Real size = op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), impulse);
-                sum.squared_change += size;
-                if (accelerated && impulse != before)
-                    sum.reversal -= size / (impulse - before) * (impulse - memory_.impulse_before[i]);
-            }
-            return sum;
-        });
-    }
-
-    void remember() {
-        region_.traversal.nodes(velocity_.size(), [this](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) velocity_before_[n] = velocity_[n];
-        });
-        region_.traversal.contacts(region_.row.size(), [this](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) memory_.impulse_before[i] = memory_.impulse[i];
-        });
-        others_.remember();
-    }
-
-    /// Extrapolates impulses and pseudo velocities by one factor, which keeps them consistent.
-    void extrapolate(Real factor) {
-        region_.traversal.nodes(velocity_.size(), [this, factor](std::size_t begin, std::size_t end) {
-            extrapolate_range(begin, end, factor, velocity_, velocity_before_);
-        });
-        region_.traversal.contacts(region_.row.size(), [this, factor](std::size_t begin, std::size_t end) {
-            extrapolate_range(begin, end, factor, memory_.impulse, memory_.impulse_before);
-        });
-        others_.extrapolate(factor);
+        return false;
     }
 
     const RegionStage& stage_;
@@ -202,22 +134,23 @@ private:
     const Op& op_;
     const Others others_;
     const PushMemory memory_;
-    const std::span<Vec4> velocity_, velocity_before_;
+    const std::span<Vec4> velocity_;
     const Real slop_;
-    Real largest_request_ = 0;  // largest sum of requested pushes so far (Requested::size) [J]
 };
 
-/// Finds frictionless pseudo velocities, which move positions only (docs/methods/contact.md 3.4). The solution of the
-/// velocity solve must already be in `stage.out`. The result is in region.memory.scratch.
-/// - Contacts that penetrate by more than push_slop separate at least at push_speed, by velocity and pseudo velocity
-///   together.
-/// - At any other contact, the push may close the gap that remains after the velocity solve, but not more.
+/// Pushes penetrating bodies apart by a split impulse without friction (docs/methods/contact.md 3.4): finds pseudo
+/// velocities, which move positions only. The solution of the velocity solve must already be in `stage.out`. The result
+/// is in region.memory.scratch. Returns false if no contact is pushed.
+///
+/// Each contact has a normal velocity u_n, given by the velocity solve, and a normal pseudo velocity p_n:
+/// - If the bodies penetrate by more than push_slop(), u_n + p_n must be at least push_speed().
+/// - Otherwise p_n may be negative and close the gap that is left after the motion with u_n, but not more.
 template <class Region, RegionOperator Op>
-[[gnu::always_inline]] inline PushOutcome solve_push(const RegionStage& stage, const Region& region, const Op& op) {
+[[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);
     const bool pressed = std::ranges::any_of(region.row, [&](Index i) { return stage.inputs.gap[i] < -slop; });
     auto others = region.pushed(stage, op);
-    if (!pressed && !others.any_rotation()) return {};
+    if (!pressed && !others.any_rotation()) return false;
     return Push(stage, region, op, std::move(others)).run(pressed);
 }
 

@@ -73,16 +73,16 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
     return along < -rounding ? along / stage_.h : 0;
 }
 
-SweepChange PushedBodies::sweep_joints(std::span<Vec4> push) const {
+Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
     const std::span<Vec4> impulse = memory_.workspace[0];
-    SweepChange sum;
+    Real size = 0;
     for (std::size_t at = row_.size(); at < row_.size() + memory_.joint.size(); ++at) {
         const auto i = static_cast<Index>(at);
         const RigidPart& part = memory_.part[at];
         const JointLaw& law = *op_.joint(i);
         if (law.mimic != 0) {
             if (op_.mobility(i) > 0)
-                sum.squared_change += op_.solve_mimic(
+                size += op_.solve_mimic(
                     i, 1, [&](Index k) { return op_.velocity_at(k, push.data()); },
                     [&](Index k, const Vec4& change) {
                         op_.apply_undeformed(k, change, push.data());
@@ -98,20 +98,9 @@ SweepChange PushedBodies::sweep_joints(std::span<Vec4> push) const {
         if (change.isZero(0)) continue;
         op_.apply_undeformed(i, change, push.data());
         impulse[at] = next;
-        sum.squared_change += op_.inner(i, change, change);
-        sum.reversal -= op_.inner(i, change, next - memory_.workspace[1][at]);
+        size += op_.inner(i, change, change);
     }
-    return sum;
-}
-
-void PushedBodies::remember() const {
-    std::ranges::copy(memory_.workspace[0].subspan(row_.size(), memory_.joint.size()),
-                      memory_.workspace[1].begin() + static_cast<std::ptrdiff_t>(row_.size()));
-}
-
-void PushedBodies::extrapolate(Real factor) const {
-    extrapolate_range(row_.size(), row_.size() + memory_.joint.size(), factor, memory_.workspace[0],
-                      memory_.workspace[1]);
+    return size;
 }
 
 AxisBounds PushedBodies::bounds(std::size_t at, const JointLaw& law) const {

@@ -30,11 +30,8 @@ public:
     /// Negative if the gap shrinks by more than the rounding error, otherwise 0. The body moves with its velocities and
     /// the pseudo velocities `push`.
     Real loss(std::size_t i, std::span<const Vec4> push) const;
-    /// Does one sweep over the joints. Returns the change of their impulses [J]
-    SweepChange sweep_joints(std::span<Vec4> push) const;
-    /// Stores the present impulses of the joints as the previous ones, in slot 1 of the workspace.
-    void remember() const;
-    void extrapolate(Real factor) const;
+    /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
+    Real sweep_joints(std::span<Vec4> push) const;
 
 private:
     AxisBounds bounds(std::size_t at, const JointLaw& law) const;

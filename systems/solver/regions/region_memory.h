@@ -75,14 +75,11 @@ struct RegionMemory {
     Column<Real> push_impulse;
     // biases of the split impulse [m/s]; during the velocity solve, previous normal impulses [N s]
     Column<Real> push_bias;
-    Column<Real> push_impulse_before;  // split impulses before the last sweep [N s]
     // Columns by node of a region. Regions without clusters and rigid bodies have four rows per contact; the rows of
     // the other regions follow.
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
-    // pseudo velocities of the split impulse before its last sweep [m/s]
-    Column<Vec4> push_before;
     // Data of regions that touch clusters of nodes or rigid bodies. For each region: list of the touched clusters, and
     // list of the touched rigid bodies.
     Ragged<Index> region_clusters, region_rigid;

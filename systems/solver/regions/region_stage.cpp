@@ -11,11 +11,9 @@ void RegionMemory::make_room_for(std::size_t contacts, std::size_t region_nodes,
     make_room(impulse, contacts);
     make_room(push_impulse, contacts);
     make_room(push_bias, contacts);
-    make_room(push_impulse_before, contacts);
     make_room(node, region_nodes);
     make_room(velocity, region_nodes);
     make_room(scratch, region_nodes);
-    make_room(push_before, region_nodes);
     make_room(node_index, nodes);
     for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(workspace[slot], contacts);
 }
@@ -25,12 +23,6 @@ RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settin
     RegionStatus status = converged ? RegionStatus::converged : RegionStatus::iteration_limit;
     if (!std::isfinite(result.error)) status = RegionStatus::not_finite;
     return {.iterations = result.iterations, .error = result.error, .status = status};
-}
-
-void note_push_error(Real error, const SolverSettings& settings, RegionOutcome& outcome) {
-    if (error <= settings.tolerance) return;
-    outcome.error = std::max(outcome.error, error);
-    outcome.status = RegionStatus::iteration_limit;
 }
 
 void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions) {
@@ -69,8 +61,7 @@ ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t coun
                          .velocity = data.velocity.span().subspan(first_node, node.size()),
                          .node = node,
                          .scratch = data.scratch.span().subspan(first_node, node.size()),
-                         .workspace = {},
-                         .push_before = data.push_before.span().subspan(first_node, node.size())};
+                         .workspace = {}};
     for (std::size_t slot = 0; slot < slots; ++slot)
         memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
     return memory;
@@ -78,8 +69,8 @@ ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t coun
 
 PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count) {
     const std::size_t first = static_cast<std::size_t>(base);
-    return {stage.memory.push_impulse.span().subspan(first, count), stage.memory.push_bias.span().subspan(first, count),
-            stage.memory.push_impulse_before.span().subspan(first, count)};
+    return {stage.memory.push_impulse.span().subspan(first, count),
+            stage.memory.push_bias.span().subspan(first, count)};
 }
 
 Real dissipated_by(const RegionStage& stage, Index row) {

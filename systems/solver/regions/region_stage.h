@@ -32,9 +32,6 @@ struct RegionOutcome {
 /// Converts the result of a method. An error within settings.tolerance counts as converged, even if the tolerance of
 /// the region is smaller.
 RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settings);
-/// Adds the error of the split impulse (PushOutcome::error) to the outcome of a region. If the error exceeds
-/// settings.tolerance, the region has reached the iteration limit.
-void note_push_error(Real error, const SolverSettings& settings, RegionOutcome& outcome);
 /// Writes an outcome to the region's row of RegionTable.
 void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions);
 

@@ -40,7 +40,7 @@ RegionOutcome sweep_in_order(const RegionStage& stage, const RegionInOrder& regi
 
 RegionOutcome solve_single(const RegionStage& stage, Index row, Index base) {
     std::array<Index, 4> node;
-    std::array<Vec4, 4> velocity, push_velocity, push_before;
+    std::array<Vec4, 4> velocity, push_velocity;
     std::size_t node_count = 0;
     const LumpedContact contact =
         load_contact(stage.inputs, row, stage.out.velocity_next, stage.settings, stage.h, [&](Index global) {
@@ -65,8 +65,7 @@ RegionOutcome solve_single(const RegionStage& stage, Index row, Index base) {
                                            .velocity = {velocity.data(), node_count},
                                            .node = {node.data(), node_count},
                                            .scratch = {push_velocity.data(), node_count},
-                                           .workspace = {},
-                                           .push_before = {push_before.data(), node_count}},
+                                           .workspace = {}},
                                           {}}};
     finish_region(stage, region, operator_of(stage, region), outcome);
     return outcome;

@@ -188,7 +188,7 @@ TEST_CASE("surfaces that touch exactly, without a contact distance, are in conta
     }
 }
 
-TEST_CASE("a ball on a plane touches it below, with the plane's midstep velocity and the combined surface", "[unit]") {
+TEST_CASE("a ball on a plane touches it below, with the plane's velocity and the combined surface", "[unit]") {
     CollisionWorld w;
     const Index ball = w.add_solid(test::ball_mesh(1, 4), w.at({0, 0, 1.01}), 0.02, {0.9, 0.4, 0.1});
     const Index plane = w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
@@ -204,9 +204,7 @@ TEST_CASE("a ball on a plane touches it below, with the plane's midstep velocity
     CHECK(c.first_body[0] == ball);
     CHECK(c.second_body[0] == no_index);
     CHECK(c.collider[0] == plane);
-    // The ball is at rest, so the contact point moves backwards relative to the plane.
-    const Vec3 arm = c.point[0] - h / 2 * Vec3(1, 2, 3);
-    CHECK((c.surface_velocity[0] - (Vec3(1, 2, 3) + Vec3(0, 0, 2).cross(arm))).norm() < 1e-12);
+    CHECK((c.surface_velocity[0] - (Vec3(1, 2, 3) + Vec3(0, 0, 2).cross(c.point[0]))).norm() < 1e-12);
     CHECK(c.static_friction[0] == Approx(0.9));  // the plane has no surface properties
     CHECK(c.restitution[0] == 0.1);
 

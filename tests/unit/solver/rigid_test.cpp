@@ -41,26 +41,10 @@ Vec3 expected_velocity(const ContactScene& scene, const SolvedScene& solved, std
     return velocity + spin.cross(rigid.position[static_cast<std::size_t>(node)] - rigid.center[r]);
 }
 
-/// Change of the velocity of a contact within half a step, because nodes of rotating cubes move on arcs [m/s].
-Vec3 change_by_arcs(const ContactScene& scene, std::size_t contact) {
-    const RigidScene& rigid = scene.rigid;
-    const Stencil& stencil = scene.stencil[contact];
-    Vec3 change = Vec3::Zero();
-    for (std::size_t a = 0; a < 4; ++a) {
-        const Index row = rigid.nodes().row(stencil.node[a]);
-        if (row == no_index) continue;
-        const auto r = static_cast<std::size_t>(row);
-        const Vec3 spin = rigid.inverse_inertia[r] * rigid.angular_momentum[r],
-                   arm = rigid.position[static_cast<std::size_t>(stencil.node[a])] - rigid.center[r];
-        change += scene.h / 2 * stencil.weight[a] * spin.cross(spin.cross(arm));
-    }
-    return change;
-}
-
 void check_coulomb(const ContactScene& scene, const SolvedScene& solved, Real margin) {
     for (std::size_t i = 0; i < scene.stencil.size(); ++i) {
         const Vec3 u = scene.relative_velocity(i, solved.velocity), &r = solved.impulse[i], &n = scene.normal[i];
-        const Vec3 mean = u + change_by_arcs(scene, i), slip = mean - mean.dot(n) * n, friction = r - r.dot(n) * n;
+        const Vec3 slip = u - u.dot(n) * n, friction = r - r.dot(n) * n;
         const Real limit = scene.dynamic_friction[i] * r.dot(n);
         CHECK(u.dot(n) > -margin);
         CHECK(r.dot(n) >= -margin);
