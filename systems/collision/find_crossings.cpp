@@ -111,11 +111,10 @@ private:
         // `along` is measured at the start of the step, but along the normal at the time of contact. If the features
         // have rotated by more than a right angle in between, it can be negative although nothing overlapped at the
         // start.
-        found.push_back(
-            contact_row(*this, candidate.feature,
-                        features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
-                        at_contact.stencil,
-                        {at_contact.point, normal, std::max(along, scale.radii), scale.contact_distance}));
+        found.push_back(contact_row(
+            *this, candidate.feature,
+            features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
+            at_contact.stencil, {at_contact.point, normal, std::max(along, scale.radii), scale.contact_distance}));
     }
 
     std::span<const Real> asleep_until_;

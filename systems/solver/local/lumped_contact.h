@@ -14,8 +14,8 @@ namespace skerry {
 /// Data of one contact for a sweep, stored contiguously. Nodes that do not move are omitted; `offset` contains their
 /// velocity.
 struct LumpedContact {
-    Vec4 normal;                 // unit vector
-    Vec4 offset;                 // velocity of fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
+    Vec4 normal;  // unit vector
+    Vec4 offset;  // velocity of fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
     std::array<Real, 4> weight;  // stencil weights of the moving nodes
     std::array<Real, 4> step;    // weight times inverse mass of each moving node [1/kg]
     std::array<Index, 4> node;   // velocity rows of the moving nodes in the region
