@@ -85,10 +85,9 @@ bool is_named_by(const Complaint& place, std::string_view object) {
     return false;
 }
 
-/// Removes a part from the start of a message.
-void erase_part(std::string& text, std::string& part) {
+/// Removes a part and its colon from the start of a message.
+void erase_part(std::string& text, const std::string& part) {
     text.erase(0, part.size() + 2);
-    part.clear();
 }
 
 }  // namespace
@@ -99,8 +98,10 @@ SceneError error_at(const Complaint& context, const SceneError& inner) {
     const auto begins_with = [&](const std::string& part) { return !part.empty() && text.starts_with(part + ": "); };
     if (begins_with(complaint.object) && is_named_by(context, complaint.object)) {
         erase_part(text, complaint.object);
-        if (begins_with(complaint.field) && context.field.ends_with("." + complaint.field))
+        if (begins_with(complaint.field) && context.field.ends_with("." + complaint.field)) {
             erase_part(text, complaint.field);
+            complaint.field.clear();  // the field of the context replaces it
+        }
     }
     if (complaint.file.empty()) {
         complaint.file = context.file;

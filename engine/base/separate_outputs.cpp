@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -27,9 +25,27 @@ std::string text_of_process(std::string_view user) {
     return "process " + std::to_string(getpid()) + " on " + host.data() + " (" + std::string(user) + ")";
 }
 
-std::string content_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+// Start of the content of each lock. A file of this name with another content belongs to a user.
+constexpr std::string_view lock_mark = "Skerry lock: ";
+
+/// Returns the start of the content of an open file, enough for the content of a lock.
+std::string content_of(int descriptor) {
+    std::array<char, 4096> text{};
+    const auto size = pread(descriptor, text.data(), text.size(), 0);
+    return {text.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
+}
+
+/// True if the open file can be a lock: a regular file that is empty or begins with lock_mark.
+bool can_be_lock(int descriptor, const std::string& content) {
+    struct stat file;
+    return fstat(descriptor, &file) == 0 && S_ISREG(file.st_mode) &&
+           (content.empty() || content.starts_with(lock_mark));
+}
+
+void write_lock(int descriptor, const std::string& content) {
+    // The content only serves messages of other processes, so a failure changes nothing.
+    if (ftruncate(descriptor, 0) == 0) [[maybe_unused]]
+        const auto written = pwrite(descriptor, content.data(), content.size(), 0);
 }
 
 /// True if the path still leads to the open file. Another process may have removed the file before it was locked.
@@ -47,29 +63,38 @@ OutputLock::OutputLock(const std::filesystem::path& lock_file, Complaint output,
     if (file_.has_parent_path()) make_folder(file_.parent_path());
     do {
         if (descriptor_ >= 0) close(descriptor_);
-        descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (descriptor_ < 0) {
             output.found =
                 "the error \"" + std::generic_category().message(errno) + "\" for the lock " + file_.string();
             output.expected = "a folder with write permission";
             output.raise();
         }
-        if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-            const std::string other = content_of(file_);
+        const std::string content = content_of(descriptor_);
+        if (!can_be_lock(descriptor_, content)) {
             close(descriptor_);
-            output.found = "an output of " + (other.empty() ? "another process" : other);
-            output.expected = "an output of one process at a time";
-            output.hint = "wait until that process has ended, or choose another path";
+            output.found = "the file " + file_.string() + ", which is not a lock of Skerry";
+            output.expected = "no other file with the name of the lock";
+            output.hint = "rename that file, or choose another path for the output";
             output.raise();
         }
+        if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+            close(descriptor_);
+            output.found = "an output of " + (content.empty() ? "another process" : content.substr(lock_mark.size()));
+            output.expected = "an output of one process at a time";
+            output.hint = "wait until that process has ended, or choose another path";
+            throw OutputReserved(output);
+        }
     } while (!is_at(file_, descriptor_));
-    std::ofstream(file_, std::ios::binary) << text_of_process(user);
+    write_lock(descriptor_, std::string(lock_mark) + text_of_process(user));
 }
 
 OutputLock::~OutputLock() {
     if (descriptor_ < 0) return;
+    // The file is removed while it is still locked, so that is_at() finds the removal. A file that another process has
+    // put in its place stays.
     std::error_code ignored;
-    std::filesystem::remove(file_, ignored);  // while the file is still locked: is_at() then finds the removal
+    if (is_at(file_, descriptor_)) std::filesystem::remove(file_, ignored);
     close(descriptor_);
 }
 

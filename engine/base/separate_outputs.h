@@ -11,13 +11,21 @@
 
 namespace skerry {
 
+/// Error of an output that another process has reserved.
+class OutputReserved : public SceneError {
+public:
+    using SceneError::SceneError;
+};
+
 /// Reserves an output for this process until the object is destroyed. It locks a file next to the output, whose text
 /// names the process, and removes the file at the end. The system releases the lock of a killed process. On a file
-/// system without locks the object has no effect.
+/// system without locks, other processes are not kept away.
 class OutputLock {
 public:
     /// Creates the folder of `lock_file` if it is missing. `user`: scene or command, for messages of other processes.
-    /// Throws `output`, with the process found, if the output is reserved. An empty `lock_file` reserves nothing.
+    /// Throws OutputReserved, which names the other process, if the output is reserved. Throws SceneError if the file
+    /// cannot be made, or if it is a file of a user. The parts of both errors are those of `output`. An empty
+    /// `lock_file` reserves nothing.
     OutputLock(const std::filesystem::path& lock_file, Complaint output, std::string_view user);
     ~OutputLock();
     OutputLock(const OutputLock&) = delete;

@@ -1,5 +1,7 @@
 #include "engine/study/run_file.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -122,7 +124,9 @@ Json run_json(const StudyRun& run) {
 }
 
 OutputLock reserve_folder(const std::filesystem::path& folder, const std::filesystem::path& scene) {
-    return {folder.empty() ? folder : folder / "study.lock",
+    // A folder that cannot be written needs no lock, because the study stores nothing in it.
+    const bool read_only = std::filesystem::exists(folder) && access(folder.c_str(), W_OK) != 0;
+    return {folder.empty() || read_only ? std::filesystem::path() : folder / "study.lock",
             {folder.string(), "study", "folder", {}, {}, {}},
             "study of " + std::filesystem::absolute(scene).string()};
 }

@@ -268,4 +268,27 @@ TEST_CASE("the balance of energy holds for a ball of gas that bounces, and count
           }) < 1e-3);
 }
 
+TEST_CASE("a cavity that is added between calls, or whose liquid changes there, is no error of the balance",
+          "[scene][cavities][balance]") {
+    const LiquidFilling water{.bulk_modulus = 1e6};
+    const auto energy_error = [&](auto&& change) {
+        Settings settings = accurate(no_gravity);
+        settings.step_size = HollowSphere(water, rubber()).world.stable_step() / 4;
+        HollowSphere sphere(water, rubber(), BodyDynamics::explicit_elastic, settings);
+        sphere.world.set_velocity(sphere.body, {0.1, 0, 0});
+        REQUIRE(sphere.world.advance(0.01).ok());
+        change(sphere, Cavities(sphere.world));
+        REQUIRE(sphere.world.advance(0.01).ok());
+        return sphere.world.report().energy_error_share;
+    };
+    CHECK(energy_error([](HollowSphere& sphere, Cavities cavities) {
+              cavities.remove(sphere.cavity);
+              REQUIRE(sphere.world.advance(0.01).ok());
+              cavities.add({.body = sphere.body, .filling = pressurised});
+          }) < 1e-3);
+    CHECK(energy_error([](HollowSphere& sphere, Cavities cavities) {
+              cavities.set_liquid_volume(sphere.cavity, 1.01 * sphere.state().volume);
+          }) < 1e-3);
+}
+
 }  // namespace skerry::test::balance_test

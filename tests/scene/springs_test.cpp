@@ -208,11 +208,11 @@ TEST_CASE("a ball that bounces on a one-sided spring gains little energy at the 
                         .stiffness = 1e6,
                         .rest_length = 1,
                         .only = SpringSide::compression});
-    const Real h = world.report().stable_step * 0.95;
-    Real highest = -drop;
-    for (Real t = 0; t < 3; t += h) {
+    Real lowest = 0, highest = -drop;  // `highest`: after the first bounce
+    for (Real t = 0, h = world.report().stable_step * 0.95; t < 3; t += h) {
         REQUIRE(world.advance(h).ok());
-        highest = std::max(highest, world.center_of_mass(ball).z());
+        lowest = std::min(lowest, world.center_of_mass(ball).z());
+        if (lowest < -drop) highest = std::max(highest, world.center_of_mass(ball).z());
     }
     CHECK(std::abs(highest) < 0.5 * drop);  // if the bound ignored the kink, a bounce would triple the energy
 }

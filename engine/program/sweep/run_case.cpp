@@ -1,4 +1,5 @@
 #include "engine/program/sweep/run_case.h"
+#include "engine/base/separate_outputs.h"
 
 #include <csignal>
 #include <exception>
@@ -33,6 +34,9 @@ int run_to_file(const CaseJob& job) {
         if (!run.outputs_failed.empty()) return exit_output;
         result = result_of(run, cpu_seconds());
         report = statistics_of(run);
+    } catch (const OutputReserved& reserved) {  // another process runs this case and writes its files
+        std::cerr << "skerry: " << reserved.what() << std::endl;
+        return exit_output;
     } catch (const SceneError& error) {
         result.status = CaseStatus::refused;
         result.message = error.what();

@@ -235,6 +235,7 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
     model.wake(body);
     model.links_open = true;
     note_forces(model);
+    state.record.balance.close();  // the energy of the filling appears with the cavity
     return handle;
 }
 
@@ -313,10 +314,13 @@ std::size_t row_with_law(const Model& model, CavityHandle cavity, CavityLaw law,
     return row;
 }
 
-void replace_keys_of_cavity(Model& model, std::size_t row, const TimeTable& values) {
-    if (!replace_keys(model.cavities, row, values)) return;
+/// Replaces the keys of a cavity by those of `values`, and wakes its body. Returns false if the cavity already has
+/// these keys.
+bool replace_keys_of_cavity(Model& model, std::size_t row, const TimeTable& values) {
+    if (!replace_keys(model.cavities, row, values)) return false;
     model.wake(static_cast<std::size_t>(model.cavities.body[row]));
     note_forces(model);
+    return true;
 }
 
 void wake_ends(Model& model, std::size_t pipe) {
@@ -371,7 +375,8 @@ void Cavities::set_liquid_volume(CavityHandle cavity, const TimeTable& volume) {
     state.require_between_steps("set_liquid_volume");
     const std::size_t row = row_with_law(state.model, cavity, CavityLaw::liquid, "set_liquid_volume");
     require_keys(title_of_row(state.model, row), "volume", volume, 0, " (m^3)");
-    replace_keys_of_cavity(state.model, row, volume);
+    // The energy of the liquid jumps with its volume.
+    if (replace_keys_of_cavity(state.model, row, volume)) state.record.balance.close();
 }
 
 PipeHandle Cavities::add(const PipeSettings& pipe) {

@@ -453,6 +453,8 @@ TEST_CASE("an error at a place in a scene names no object and no field twice", "
     CHECK(message({}, {}, "mesh", "nodes") == "f: mesh: nodes: found x");
     CHECK_THROWS_WITH(load_scene_text(scene_with(R"("settings": {"tolerance": 2})"), {}),
                       Catch::StartsWith("scene: settings: tolerance: found 2"));
+    const SceneError inner(Complaint{{}, "settings", "theta", "x", {}, {}});
+    CHECK(error_at({"f", {}, "settings", {}, {}, {}}, inner).complaint().object == "settings");
 }
 
 TEST_CASE("the published schema is the one that this reader has", "[unit][contract]") {

@@ -1,5 +1,6 @@
 // Studies: their runs, the budget, stopping and continuing, and the cheapest settings.
 #include <unistd.h>
+#include <fstream>
 
 #include <algorithm>
 #include <bit>
@@ -276,6 +277,18 @@ TEST_CASE("a folder has one study at a time") {
               std::string::npos);
     }
     CHECK(message_of(scene, settings).empty());
+}
+
+TEST_CASE("a file of the user with the name of a lock is refused and stays") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar), lock = folder.write("study.lock", "my notes");
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path()};
+    settings.seconds = 0.02;
+    CHECK(message_of(scene, settings).find("which is not a lock of Skerry") != std::string::npos);
+    std::ifstream file(lock);
+    std::string kept;
+    std::getline(file, kept);
+    CHECK(kept == "my notes");
 }
 
 TEST_CASE("a study whose runs cannot be written has results all the same") {
