@@ -15,6 +15,14 @@ struct FreeNodes {
     std::span<const Range> body_rigid;   // column BodyTable::rigid
     std::span<const Index> holder;       // column RigidBodyTable::holder
 
+    /// Tables: NodeTable, BodyTable, RigidBodyTable.
+    static FreeNodes bind(const auto& binder, const auto& node, const auto& body, const auto& rigid) {
+        return {.inverse_mass = binder.read(node.inverse_mass),
+                .node_body = binder.read(node.body),
+                .body_rigid = binder.read(body.rigid),
+                .holder = binder.read(rigid.holder)};
+    }
+
     bool contain(std::size_t n) const {
         const Range rigid = body_rigid[static_cast<std::size_t>(node_body[n])];
         return inverse_mass[n] > 0 && (rigid.size() == 0 || holder[static_cast<std::size_t>(rigid.begin)] == no_index);

@@ -44,8 +44,8 @@ bool can_be_lock(int descriptor, const std::string& content) {
 
 void write_lock(int descriptor, const std::string& content) {
     // The content only serves messages of other processes, so a failure changes nothing.
-    if (ftruncate(descriptor, 0) == 0) [[maybe_unused]]
-        const auto written = pwrite(descriptor, content.data(), content.size(), 0);
+    if (ftruncate(descriptor, 0) != 0) return;
+    [[maybe_unused]] const auto written = pwrite(descriptor, content.data(), content.size(), 0);
 }
 
 /// True if the path still leads to the open file. Another process may have removed the file before it was locked.

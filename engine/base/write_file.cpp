@@ -73,6 +73,15 @@ void require_extension(const std::filesystem::path& file, std::initializer_list<
     complain(file, found.empty() ? "no extension" : "the extension " + found, expected, "choose another file name");
 }
 
+std::filesystem::path real_path(const std::filesystem::path& file) {
+    std::error_code error;
+    // If the file does not exist yet, weakly_canonical() keeps a relative name relative, so the name is first made
+    // absolute.
+    const std::filesystem::path full = std::filesystem::absolute(file);
+    const std::filesystem::path found = std::filesystem::weakly_canonical(full, error);
+    return error ? full : found;
+}
+
 void require_replaceable(const std::filesystem::path& file) {
     target_of(file);
 }

@@ -21,6 +21,10 @@ void require_extension(const std::filesystem::path& file, std::initializer_list<
 /// streams such as pipes and terminals are accepted. Symbolic links are followed.
 void require_replaceable(const std::filesystem::path& file);
 
+/// Returns the absolute path of a file that may not exist yet, with symbolic links followed. If this fails, links are
+/// kept.
+std::filesystem::path real_path(const std::filesystem::path& file);
+
 /// A temporary file in the folder of `file`, which commit() renames to `file`. So other programs never see an
 /// incomplete file, and a failure leaves the old file unchanged. All functions throw SceneError that names the file and
 /// the cause.

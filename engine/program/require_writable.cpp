@@ -41,14 +41,6 @@ void require_writable_file(const std::filesystem::path& file) {
 }
 
 void require_distinct(std::span<const NamedFile> files) {
-    const auto real_path = [](const std::filesystem::path& file) {
-        std::error_code error;
-        // If the file does not exist yet, weakly_canonical() keeps a relative name relative, so the name is first made
-        // absolute.
-        const std::filesystem::path full = std::filesystem::absolute(file);
-        const std::filesystem::path found = std::filesystem::weakly_canonical(full, error);
-        return error ? full : found;
-    };
     for (std::size_t i = 0; i < files.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
             if (files[i].file.empty() || files[k].file.empty() || real_path(files[i].file) != real_path(files[k].file))

@@ -1,4 +1,5 @@
 #include "engine/program/run_outputs.h"
+#include "engine/base/write_file.h"
 
 #include <algorithm>
 #include <exception>
@@ -82,7 +83,7 @@ void RunOutputs::reserve(const RunOptions& options, const std::string& scene) {
         // a device such as /dev/null
         const bool is_stream = exists(found) && !is_regular_file(found) && !is_directory(found);
         if (output.empty() || is_stream) return;
-        std::filesystem::path lock_file = std::filesystem::weakly_canonical(std::filesystem::absolute(output));
+        std::filesystem::path lock_file = real_path(output);
         if (!name.empty()) lock_file /= name;
         lock_file += ".lock";
         if (reserved.insert(lock_file).second)

@@ -130,10 +130,7 @@ struct CavityWorkInputs {
                 .power = binder.read(cavity.power),
                 .velocity = binder.read(node.velocity),
                 .velocity_next = binder.read(node.velocity_next),
-                .free = {.inverse_mass = binder.read(node.inverse_mass),
-                         .node_body = binder.read(node.body),
-                         .body_rigid = binder.read(body.rigid),
-                         .holder = binder.read(rigid.holder)},
+                .free = FreeNodes::bind(binder, node, body, rigid),
                 .ghosts = {binder.read(body.ghost)}};
     }
 };

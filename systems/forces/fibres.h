@@ -111,10 +111,7 @@ struct FibreWorkInputs {
         return {.next = binder.read(fibres.next),
                 .passive_before = binder.read(fibres.passive),
                 .velocity_next = binder.read(nodes.velocity_next),
-                .free = {.inverse_mass = binder.read(nodes.inverse_mass),
-                         .node_body = binder.read(nodes.body),
-                         .body_rigid = binder.read(bodies.rigid),
-                         .holder = binder.read(rigid.holder)}};
+                .free = FreeNodes::bind(binder, nodes, bodies, rigid)};
     }
 };
 

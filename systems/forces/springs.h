@@ -136,10 +136,7 @@ struct SpringWorkInputs {
                 .elastic_before = binder.read(springs.elastic),
                 .rest_rate_before = binder.read(springs.rest_rate),
                 .velocity_next = binder.read(nodes.velocity_next),
-                .free = {.inverse_mass = binder.read(nodes.inverse_mass),
-                         .node_body = binder.read(nodes.body),
-                         .body_rigid = binder.read(bodies.rigid),
-                         .holder = binder.read(rigid.holder)}};
+                .free = FreeNodes::bind(binder, nodes, bodies, rigid)};
     }
 };
 

@@ -3,6 +3,7 @@
 #include <system_error>
 #include <vector>
 
+#include "engine/base/write_file.h"
 #include "engine/output/vtk/vtk_series.h"
 #include "engine/output/writer.h"
 #include "skerry/error.h"
@@ -18,8 +19,8 @@ public:
         : folder_(folder), name_(scene.name), materials_(scene.materials) {}
 
     bool may_write(const std::filesystem::path& file) const override {
-        const std::filesystem::path path = canonical(file);
-        return path.parent_path() == canonical(folder_ / "frame").parent_path() &&
+        const std::filesystem::path path = real_path(file);
+        return path.parent_path() == real_path(folder_ / "frame").parent_path() &&
                is_series_file(path.filename().string(), name_);
     }
     void open(World& world, const RunStart& start) override {
@@ -41,10 +42,6 @@ public:
     }
 
 private:
-    static std::filesystem::path canonical(const std::filesystem::path& path) {
-        std::error_code ignored;
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path), ignored);
-    }
     /// Writes the index, so that the frames written so far can be opened. Does nothing if the index cannot be written.
     void write_index_if_possible() {
         try {

@@ -30,9 +30,9 @@ struct SurfaceAround {
     // Matrices of a least-squares fit for a smooth surface with the normal N. For a given b = F N and area_gradient,
     // the result of surface_stretch(), they give the deformation gradient
     //     F = area_gradient plane_inverse + b normal_row^T
-    // Of all F with this b it differs least from the deformation gradients within the triangles. `plane_inverse` is the
-    // inverse, within the tangent plane, of the sum over the triangles of area times projector onto the triangle
-    // [1/m^2].
+    // This F differs least, among all F with this b, from the deformation gradients within the triangles.
+    // `plane_inverse` is the inverse, within the tangent plane, of the sum over the triangles of area times projector
+    // onto the triangle [1/m^2].
     Mat3 plane_inverse = Mat3::Zero();
     Vec3 normal_row = Vec3::Zero();
 };
